@@ -1,0 +1,125 @@
+"""The hole: a drill axis, a stroke, and where the spin is counted from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array, finite, unit
+from zerorev.model.profile import Profile
+from zerorev.model.tool import Tool
+
+__all__ = ["REFERENCES", "Hole", "psi_zero_vector"]
+
+REFERENCES = ("base_y", "nearest_base", "part_x", "part_y")
+
+
+@dataclass(frozen=True)
+class Hole:
+    """One hole to drill, in the base frame.
+
+    Attributes:
+        id: how the user calls it.
+        target: bottom of the stroke [m], shape (3,).
+        direction: unit plunge direction, into the material, shape (3,).
+        depth: stroke [m].
+        psi_zero: direction of Y_tcp at psi = 0, unit and perpendicular to `direction`, shape (3,).
+        profile: a given motion, evaluated instead of searched for.
+        branch: the branch of the given motion (0..7); with no `profile`, the only branch to search.
+    """
+
+    id: str
+    target: Array
+    direction: Array
+    depth: float
+    psi_zero: Array
+    profile: Profile | None = None
+    branch: int | None = None
+
+    def __post_init__(self) -> None:
+        """Check the numbers; scale the direction; make psi_zero perpendicular to it."""
+        where = f"hole {self.id}"
+        direction = unit(self.direction, f"{where}, direction")
+        object.__setattr__(self, "target", finite(self.target, (3,), f"{where}, target"))
+        object.__setattr__(self, "direction", direction)
+        object.__setattr__(self, "psi_zero", _perpendicular(self.psi_zero, direction, where))
+        if not (np.isfinite(self.depth) and self.depth > 0):
+            raise InputError(f"a depth of {self.depth * 1e3:g} mm", where=where, accepted="a finite depth above 0")
+        if self.branch is not None and self.branch not in range(8):
+            raise InputError(f"branch {self.branch}", where=where, accepted="0 to 7")
+        if self.profile is not None:
+            ends = self.profile.standoff[[0, -1]]
+            if not np.allclose(ends, self.depth, rtol=0, atol=1e-9):
+                raise InputError(
+                    f"the given motion runs from {ends[0] * 1e3:g} to {ends[1] * 1e3:g} mm of stand-off",
+                    where=where,
+                    accepted=f"both ends at the depth, {self.depth * 1e3:g} mm",
+                )
+
+
+def psi_zero_vector(
+    reference: str | Array, target: Array, direction: Array, tool: Tool, T_base_part: Array, where: str
+) -> Array:
+    """Y_tcp at psi = 0 in the base frame, unit, shape (3,) (conventions: frames).
+
+    Args:
+        reference: one of `REFERENCES`, or a vector in the part frame, shape (3,).
+        target: bottom of the hole [m], base frame, shape (3,).
+        direction: unit plunge direction, base frame, shape (3,).
+        tool: needed for `nearest_base` alone.
+        T_base_part: part frame, shape (4, 4).
+        where: how a message names the hole.
+
+    Raises:
+        InputError: unknown reference, or one that is parallel to the drill axis.
+    """
+    if not isinstance(reference, str):
+        return _perpendicular(T_base_part[:3, :3] @ unit(reference, "psi_reference"), direction, where)
+    if reference == "nearest_base":
+        return _nearest_base(target, direction, tool, where)
+    axes = {"base_y": np.array([0.0, 1.0, 0.0]), "part_x": T_base_part[:3, 0], "part_y": T_base_part[:3, 1]}
+    if reference not in axes:
+        raise InputError(f"unknown reference '{reference}'", where="psi_reference",
+                         accepted=f"{', '.join(REFERENCES)}, or a vector")
+    return _perpendicular(axes[reference], direction, where, reference)
+
+
+def _perpendicular(vector: Array, direction: Array, where: str, name: str = "psi reference") -> Array:
+    across = finite(vector, (3,), f"{where}, {name}")
+    across = across - (across @ direction) * direction
+    length = float(np.linalg.norm(across))
+    if length < 1e-6 * max(1.0, float(np.linalg.norm(vector))):
+        raise InputError(f"{name} is parallel to the drill axis, so it cannot count the spin", where=where,
+                         accepted=f"another of {', '.join(REFERENCES)}, or a vector across the drill axis")
+    return across / length
+
+
+def _nearest_base(target: Array, direction: Array, tool: Tool, where: str) -> Array:
+    """Y_tcp at the spin that brings the flange closest to the base axis at the target (thesis sec. 3.1)."""
+    R, tip = tool.T_flange_tcp[:3, :3], tool.T_flange_tcp[:3, 3]
+    flange = -R.T @ tip  # the flange's origin in the tcp frame
+    if np.hypot(flange[0], flange[1]) < 1e-9:
+        raise InputError("the flange lies on the drill axis, so no spin brings it nearer to the base", where=where,
+                         accepted="another psi_reference")
+    z = -direction
+    x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
+    x /= np.linalg.norm(x)
+    y = np.cross(z, x)
+    centre = target + flange[2] * z
+
+    def distance(psi: Array) -> Array:
+        c, s = np.cos(psi)[..., None], np.sin(psi)[..., None]
+        place = centre + flange[0] * (c * x + s * y) + flange[1] * (c * y - s * x)
+        return np.asarray(np.hypot(place[..., 0], place[..., 1]))
+
+    # one smooth period: a grid finds the valley, ternary steps its bottom
+    grid = np.linspace(-np.pi, np.pi, 721)
+    low, high = (float(grid[np.argmin(distance(grid))]) + side * (grid[1] - grid[0]) for side in (-1, 1))
+    for _ in range(60):
+        third = (high - low) / 3
+        near, far = distance(np.array([low + third, high - third]))
+        low, high = (low, high - third) if near < far else (low + third, high)
+    psi = (low + high) / 2
+    return np.asarray(np.cos(psi) * y - np.sin(psi) * x)

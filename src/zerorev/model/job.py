@@ -1,0 +1,123 @@
+"""The job: a robot, a tool, holes, and how they are to be drilled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array, finite, is_rigid
+from zerorev.model.hole import Hole
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = ["Job", "Settings"]
+
+Objective = Literal["travel", "margin", "plunge_rotation"]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to plan and how to run the motion.
+
+    Attributes:
+        min_rate: motion threshold [rad/m]; every joint moves at least so much per metre of path; 0 switches it off
+            (thesis sec. 4.3, theory §5).
+        min_rate_rule: `pointwise` (at every point) or `mean` (on the average over each leg).
+        psi_bound: spins within +- this [rad], or None for a periodic spin.
+        objective: among plans of equal reversals that keep the threshold: least `travel`, greatest `margin` (slowest
+            joint), or least `plunge_rotation`.
+        reversal_weights: what a reversal of each joint costs, shape (6,), each above 0.
+        near_joints: joint angles [rad], shape (6,), to which free turns are chosen nearest; None: the turns farthest
+            from the limits.
+        blend: radius of the blend at the corner [m]; 0 stops exactly there.
+        blend_shortfall: depth lost to the blend [m], as measured on the controller; None: half the radius.
+        deepen_corner: place the corner deeper by the shortfall, so that the true depth is met.
+        lead_in: length [m] run along the plunge leg before the drill enters.
+        feed_plunge: feed of the plunge [m/s].
+        feed_retract: feed of the retract [m/s].
+        spindle_rpm: speed of the spindle [rev/min], or None where the program need not know it.
+    """
+
+    min_rate: float = float(np.deg2rad(10.0))
+    min_rate_rule: Literal["pointwise", "mean"] = "pointwise"
+    psi_bound: float | None = None
+    objective: Objective = "travel"
+    reversal_weights: tuple[float, ...] = (1.0,) * 6
+    near_joints: tuple[float, ...] | None = None
+    blend: float = 1e-3
+    blend_shortfall: float | None = None
+    deepen_corner: bool = False
+    lead_in: float = 5e-3
+    feed_plunge: float = 5e-3
+    feed_retract: float = 20e-3
+    spindle_rpm: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check ranges."""
+        for name in ("min_rate", "blend", "lead_in"):
+            _check(getattr(self, name) >= 0, name, "0 or more")
+        for name in ("feed_plunge", "feed_retract"):
+            _check(getattr(self, name) > 0, name, "above 0")
+        if self.psi_bound is not None:
+            _check(self.psi_bound > 0, "psi_bound", "above 0, or none for a periodic spin")
+        if self.blend_shortfall is not None:
+            _check(0 <= self.blend_shortfall <= self.blend, "blend_shortfall", "0 to the blend radius")
+        if self.spindle_rpm is not None:
+            _check(self.spindle_rpm > 0, "spindle_rpm", "above 0, or none")
+        _check(len(self.reversal_weights) == 6 and all(w > 0 for w in self.reversal_weights), "reversal_weights",
+               "six numbers above 0")
+        if self.near_joints is not None:
+            _check(len(self.near_joints) == 6, "near_joints", "six angles")
+
+    @property
+    def shortfall(self) -> float:
+        """Depth lost to the blend [m]: as measured, or half the radius of a parabolic blend (theory §5)."""
+        return self.blend / 2 if self.blend_shortfall is None else self.blend_shortfall
+
+    @property
+    def corner(self) -> float:
+        """Stand-off of the programmed corner [m]: 0, or below 0 where it is placed deeper."""
+        return -self.shortfall if self.deepen_corner else 0.0
+
+
+def _check(ok: bool, name: str, accepted: str) -> None:
+    if not ok:  # also for NaN, of which no comparison is true
+        raise InputError("out of range", where=name, accepted=accepted)
+
+
+@dataclass(frozen=True)
+class Job:
+    """Everything that planning needs.
+
+    Attributes:
+        robot: the arm.
+        tool: the drill on its flange.
+        holes: what to drill, base frame.
+        settings: how.
+        T_base_part: part frame, shape (4, 4), translation [m].
+        name: of the job; names the program.
+    """
+
+    robot: Robot
+    tool: Tool
+    holes: tuple[Hole, ...]
+    settings: Settings = field(default_factory=Settings)
+    T_base_part: Array = field(default_factory=lambda: np.eye(4))
+    name: str = "job"
+
+    def __post_init__(self) -> None:
+        """Check that there are holes and that their ids differ."""
+        T = finite(self.T_base_part, (4, 4), "part_frame")
+        if not is_rigid(T):
+            raise InputError("not a rotation and a translation", where="part_frame")
+        object.__setattr__(self, "T_base_part", T)
+        if not self.holes:
+            raise InputError("no holes", where="holes", accepted="one hole or more")
+        seen: set[str] = set()
+        for hole in self.holes:
+            if hole.id in seen:
+                raise InputError(f"the id '{hole.id}' is used twice", where="holes", accepted="ids that differ")
+            seen.add(hole.id)

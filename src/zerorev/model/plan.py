@@ -1,0 +1,186 @@
+"""The plan: what comes out, complete enough to be checked and exported alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = ["Baseline", "Event", "Finding", "HolePlan", "Motion", "Plan", "Score", "Verification"]
+
+Level = Literal["error", "warning", "info"]
+LegName = Literal["plunge", "target", "retract"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something a user should know about a plan or one of its holes.
+
+    Attributes:
+        level: `error` (no program can be made of it), `warning` (look at it first), `info`.
+        kind: a fixed word for machines, e.g. `unreachable`, `limit`, `reversal`, `threshold`.
+        message: one sentence for people.
+        hole: the hole's id, or None where the whole plan is meant.
+    """
+
+    level: Level
+    kind: str
+    message: str
+    hole: str | None = None
+
+
+@dataclass(frozen=True)
+class Event:
+    """A reversal: where one joint changes direction.
+
+    Attributes:
+        joint: 1 to 6.
+        leg: `plunge` or `retract` where it happens within a leg, `target` where it happens at the corner.
+        standoff: where [m].
+    """
+
+    joint: int
+    leg: LegName
+    standoff: float
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a motion does to the joints.
+
+    Attributes:
+        reversals_per_joint: count of direction changes, shape (6,), int.
+        events: where they happen, in order of motion.
+        travel: sum over the joints of the angle moved [rad].
+        min_rate: least |d theta / d path| at any point of the motion [rad/m], shape (6,) (rule `pointwise`).
+        mean_rate: the lesser of the two legs' average |d theta / d path| [rad/m], shape (6,) (rule `mean`).
+        limit_distance: least distance to a joint limit [rad], shape (6,); negative beyond it.
+    """
+
+    reversals_per_joint: tuple[int, ...]
+    events: tuple[Event, ...]
+    travel: float
+    min_rate: Array
+    mean_rate: Array
+    limit_distance: Array
+
+    @property
+    def reversals(self) -> int:
+        """Count of direction changes over all joints."""
+        return sum(self.reversals_per_joint)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The joints at the breakpoints of a profile on one branch.
+
+    Attributes:
+        profile: the spin along the path.
+        branch: 0..7 (conventions: branch).
+        joints: controller angles with turns [rad] at the profile's breakpoints, shape (n, 6).
+    """
+
+    profile: Profile
+    branch: int
+    joints: Array
+
+
+@dataclass(frozen=True)
+class Baseline:
+    """The same hole drilled with constant spin psi = psi_start on the plan's branch."""
+
+    reversals_per_joint: tuple[int, ...]
+    travel: float  # [rad]
+
+    @property
+    def reversals(self) -> int:
+        """Count of direction changes over all joints."""
+        return sum(self.reversals_per_joint)
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What the independent check looked at, and what it found.
+
+    Attributes:
+        passed: whether the plan's claims hold.
+        samples: points looked at on the two legs.
+        blend_samples: points looked at on the blended corner.
+        reversals_per_joint: as counted by the check, shape (6,).
+        max_position_error: greatest distance between the tip by forward kinematics and the drill axis' point [m].
+        max_rotation_error: greatest angle between the tool by forward kinematics and the one asked for [rad].
+        max_joint_step: greatest joint step between neighbouring samples [rad].
+        min_limit_distance: least distance to a joint limit [rad].
+        failures: one sentence a failed check; empty where passed.
+    """
+
+    passed: bool
+    samples: int
+    blend_samples: int
+    reversals_per_joint: tuple[int, ...]
+    max_position_error: float
+    max_rotation_error: float
+    max_joint_step: float
+    min_limit_distance: float
+    failures: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class HolePlan:
+    """One hole's answer.
+
+    Attributes:
+        hole: what was asked.
+        status: `planned` (searched for), `evaluated` (given and looked at), `infeasible` (no motion at all).
+        motion: the motion, or None where there is none.
+        score: what the motion does to the joints, or None.
+        baseline: the same with constant spin, or None where that cannot be run.
+        verified: the independent check, or None where it was not run.
+        findings: what a user should know.
+        wrist_offset: distance of the wrist centre from the drill axis [m], the lever of the spin (theory §1).
+    """
+
+    hole: Hole
+    status: Literal["planned", "evaluated", "infeasible"]
+    wrist_offset: float
+    motion: Motion | None = None
+    score: Score | None = None
+    baseline: Baseline | None = None
+    verified: Verification | None = None
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A job's answer, hole by hole.
+
+    Attributes:
+        robot: the arm.
+        tool: the drill.
+        settings: how it was planned.
+        holes: one answer a hole, in the job's order.
+        T_base_part: part frame, shape (4, 4), translation [m].
+        name: of the job.
+        findings: about the whole plan.
+    """
+
+    robot: Robot
+    tool: Tool
+    settings: Settings
+    holes: tuple[HolePlan, ...]
+    T_base_part: Array = field(default_factory=lambda: np.eye(4))
+    name: str = "job"
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def all_findings(self) -> tuple[Finding, ...]:
+        """The plan's findings, then each hole's."""
+        return self.findings + tuple(finding for hole in self.holes for finding in hole.findings)

@@ -1,0 +1,105 @@
+"""The robot: an ortho-parallel arm with a spherical wrist, its joints as the controller shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array, finite
+
+__all__ = ["ArmGeometry", "JointLimits", "Robot"]
+
+Six = tuple[float, float, float, float, float, float]
+
+
+class ArmGeometry(NamedTuple):
+    """Seven lengths [m], and how the controller counts the joints; a NamedTuple, so that kernels take it whole.
+
+    The lengths are those of Brandstoetter, Angerer, Hofbaur (2014): a1 shoulder forward of axis 1, a2 elbow offset,
+    b lateral offset, c1 shoulder height, c2 upper arm, c3 forearm, c4 wrist centre to flange.
+    Model angle q = sign * controller angle - offset; at q = 0 the arm stands straight up.
+    """
+
+    a1: float
+    a2: float
+    b: float
+    c1: float
+    c2: float
+    c3: float
+    c4: float
+    sign: Six
+    offset: Six  # [rad]
+
+
+@dataclass(frozen=True)
+class JointLimits:
+    """What the joints may do, as the controller counts them.
+
+    Attributes:
+        lower: least angle [rad], shape (6,).
+        upper: greatest angle [rad], shape (6,).
+        speed: greatest speed [rad/s], shape (6,).
+    """
+
+    lower: Array
+    upper: Array
+    speed: Array
+
+    def __post_init__(self) -> None:
+        """Check shapes, finiteness and order."""
+        for name in ("lower", "upper", "speed"):
+            object.__setattr__(self, name, finite(getattr(self, name), (6,), f"joint limits, {name}"))
+        if not (self.lower < self.upper).all():
+            raise InputError("a lower joint limit is not below its upper one", accepted="lower < upper for each joint")
+        if not (self.speed > 0).all():
+            raise InputError("a joint speed is not positive", accepted="speeds above 0")
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A six-axis robot of the ortho-parallel, spherical-wrist class.
+
+    Attributes:
+        name: how jobs call it.
+        arm: geometry, signs and offsets.
+        limits: joint limits and speeds.
+        joint_names: as the controller shows them, e.g. A1..A6.
+        manufacturer: who makes it, e.g. KUKA.
+        model: the maker's name of it.
+        sources: where each group of numbers comes from.
+    """
+
+    name: str
+    arm: ArmGeometry
+    limits: JointLimits
+    joint_names: tuple[str, str, str, str, str, str] = ("A1", "A2", "A3", "A4", "A5", "A6")
+    manufacturer: str = ""
+    model: str = ""
+    sources: dict[str, str] = field(default_factory=dict, compare=False)
+    second_sources: tuple[str, ...] = field(default=(), compare=False)
+    caveats: tuple[str, ...] = field(default=(), compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the arm's numbers."""
+        arm = self.arm
+        lengths = finite(arm[:7], (7,), f"robot {self.name}, geometry")
+        if min(arm.c2, np.hypot(arm.c3, arm.a2)) <= 0:
+            raise InputError("the upper arm or the forearm has no length", where=f"robot {self.name}, geometry",
+                             accepted="c2 > 0 and c3 or a2 other than 0")
+        if any(abs(s) != 1 for s in arm.sign):
+            raise InputError("a joint sign is neither 1 nor -1", where=f"robot {self.name}", accepted="1 or -1")
+        offset = finite(arm.offset, (6,), f"robot {self.name}, offset")
+        # plain floats throughout: an int would be another type, and another compilation, to the kernels
+        object.__setattr__(
+            self,
+            "arm",
+            ArmGeometry(*map(float, lengths), sign=_six(arm.sign), offset=_six(offset)),
+        )
+
+
+def _six(values: Array | tuple[float, ...]) -> Six:
+    a, b, c, d, e, f = (float(v) for v in values)
+    return (a, b, c, d, e, f)

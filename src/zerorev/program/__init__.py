@@ -1,0 +1,1 @@
+"""Neutral program, preflight, and one file a controller."""
