@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -25,7 +25,8 @@ class Hole:
         target: bottom of the stroke [m], shape (3,).
         direction: unit plunge direction, into the material, shape (3,).
         depth: stroke [m].
-        psi_zero: direction of Y_tcp at psi = 0, unit and perpendicular to `direction`, shape (3,).
+        psi_zero: direction of Y_tcp at psi = 0, shape (3,); made unit and perpendicular to `direction`. The default is
+            Y_base, the reference `base_y`.
         profile: a given motion, evaluated instead of searched for.
         branch: the branch of the given motion (0..7); with no `profile`, the only branch to search.
     """
@@ -34,7 +35,7 @@ class Hole:
     target: Array
     direction: Array
     depth: float
-    psi_zero: Array
+    psi_zero: Array = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
     profile: Profile | None = None
     branch: int | None = None
 

@@ -1,0 +1,223 @@
+"""What a motion does to the joints: reversals as located events, travel, slowest motion, distance to limits.
+
+A criterion is one small class that turns a `Score` into a number; an `Objective` is their weighted sum, and the
+thesis' objective (eq. 4.7) is one such sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.plan import Event, Finding, LegName, Motion, Score
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion import JointPath, joint_path, outward_rates
+
+__all__ = [
+    "NIL_RATE",
+    "Criterion",
+    "Evaluation",
+    "Objective",
+    "Reversals",
+    "Travel",
+    "evaluate",
+    "meets_threshold",
+    "thesis_objective",
+]
+
+NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
+SAMPLES_PER_SEGMENT = 200
+CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A motion looked at: its joints and score where it can be run, and what is wrong where it cannot.
+
+    Attributes:
+        motion: the joints at the breakpoints, or None.
+        score: or None.
+        findings: fault, jump, limit.
+    """
+
+    motion: Motion | None
+    score: Score | None
+    findings: tuple[Finding, ...]
+
+
+def evaluate(
+    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings | None = None
+) -> Evaluation:
+    """Evaluate one motion on one branch.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: what is drilled.
+        profile: the spin along the path.
+        branch: 0..7.
+        settings: whose `near_joints` chooses the turns.
+    """
+    near = settings.near_joints if settings else None
+    path = joint_path(robot, tool, hole, profile, branch, near=near)
+    if not path.runs:
+        return Evaluation(None, None, _faults(robot, hole, branch, path))
+    events, min_rate = _turning_points(robot, tool, hole, profile, branch)
+    variation = _variation(profile, path)
+    legs = np.abs(np.diff(profile.distance[[0, profile.corner, -1]]))
+    counts = tuple(sum(event.joint == i + 1 for event in events) for i in range(6))
+    limits = robot.limits
+    score = Score(
+        reversals_per_joint=counts,
+        events=events,
+        travel=float(variation.sum()),
+        min_rate=min_rate,
+        mean_rate=(variation / legs[:, None]).min(axis=0),
+        limit_distance=np.minimum(path.joints - limits.lower, limits.upper - path.joints).min(axis=0),
+    )
+    return Evaluation(path.at_breakpoints(profile, branch), score, ())
+
+
+def meets_threshold(score: Score, settings: Settings) -> bool:
+    """Whether every joint that does not reverse keeps the motion threshold, by the settings' rule (theory §5)."""
+    rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+    steady = np.array(score.reversals_per_joint) == 0
+    # the search keeps the threshold to the last bits of its own sampling, so do not ask for more here
+    return bool((rates[steady] >= settings.min_rate * (1 - 1e-6)).all())
+
+
+def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Finding, ...]:
+    found = []
+    if path.fault is not None:
+        found.append(("unreachable", f"branch {branch} cannot reach {path.fault * 1e3:.2f} mm of stand-off"))
+    if path.jump is not None:
+        found.append(("jump", f"branch {branch} jumps at {path.jump * 1e3:.2f} mm of stand-off"))
+    for i in (joint - 1 for joint in path.over_limit):
+        low, high = np.rad2deg([path.joints[:, i].min(), path.joints[:, i].max()])
+        allowed = np.rad2deg([robot.limits.lower[i], robot.limits.upper[i]])
+        name = robot.joint_names[i]
+        found.append(
+            ("limit", f"{name} runs from {low:.2f} to {high:.2f} deg, allowed are {allowed[0]:g} to {allowed[1]:g} deg")
+        )
+    return tuple(Finding("error", kind, message, hole.id) for kind, message in found)
+
+
+def _variation(profile: Profile, path: JointPath) -> Array:
+    """Angle moved by each joint on each leg [rad], shape (2, 6)."""
+    corner = np.searchsorted(path.distance, profile.distance[profile.corner] - 1e-12)
+    steps = np.abs(np.diff(path.joints, axis=0))
+    return np.array([steps[:corner].sum(axis=0), steps[corner:].sum(axis=0)])
+
+
+def _turning_points(
+    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int
+) -> tuple[tuple[Event, ...], Array]:
+    """Reversals as events in order of motion, and the least |rate| of each joint [rad/m], shape (6,).
+
+    Each segment of the profile is sampled; where a joint comes nearest to rest between two samples it is looked at
+    again, closely, so that a joint that turns round and back between two samples is not missed; a change of sign is
+    then located by bisection.
+    """
+    direction = np.zeros(6)  # the last direction in which each joint moved
+    slowest = np.full(6, np.inf)
+    events: list[tuple[float, Event]] = []
+    for k, slope in enumerate(profile.twist_rate):
+        inwards = k < profile.corner
+        leg: LegName = "plunge" if inwards else "retract"
+        start, end = profile.standoff[k : k + 2]
+
+        def rates(x: Array, k: int = k, slope: float = slope, sense: float = -1.0 if inwards else 1.0) -> Array:
+            """Rates along the motion at fractions x of the segment."""
+            standoff = profile.standoff[k] + x * (profile.standoff[k + 1] - profile.standoff[k])
+            psi = profile.psi[k] + x * (profile.psi[k + 1] - profile.psi[k])
+            return sense * outward_rates(robot, tool, hole, branch, standoff, psi, slope)
+
+        x = np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT)
+        x = _with_closer_looks(x, np.abs(rates(x)))
+        r = rates(x)
+        slowest = np.fmin(slowest, np.abs(r).min(axis=0))
+        for i in range(6):
+            signs = np.where(np.abs(r[:, i]) <= NIL_RATE, 0.0, np.sign(r[:, i]))
+            for n in np.flatnonzero(signs):
+                if direction[i] and signs[n] != direction[i]:
+                    # a segment's first sample turns at the breakpoint itself, any other between it and the one before
+                    place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[n - 1], x[n])
+                    standoff = float(start + place * (end - start))
+                    where: LegName = "target" if n == 0 and k == profile.corner else leg
+                    events.append((k + place, Event(i + 1, where, standoff)))
+                direction[i] = signs[n]
+    events.sort(key=lambda entry: (entry[0], entry[1].joint))
+    return tuple(event for _, event in events), slowest
+
+
+def _with_closer_looks(x: Array, speed: Array) -> Array:
+    inner = speed[1:-1]
+    dips = np.flatnonzero(((inner <= speed[:-2]) & (inner <= speed[2:])).any(axis=1)) + 1
+    return np.unique(np.concatenate([x, *(np.linspace(x[n - 1], x[n + 1], CLOSER_LOOK) for n in dips)]))
+
+
+def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
+    sign = np.sign(rate(np.array([high]))[0])
+    for _ in range(50):
+        middle = (low + high) / 2
+        if np.sign(rate(np.array([middle]))[0]) == sign:
+            high = middle
+        else:
+            low = middle
+    return (low + high) / 2
+
+
+class Criterion(Protocol):
+    """One aspect of a motion, as a number between 0 (best) and about 1."""
+
+    def __call__(self, score: Score) -> float:
+        """Cost of the motion."""
+
+
+@dataclass(frozen=True)
+class Reversals:
+    """Weighted share of the joints' reversals: N_rev / 6 where all weigh the same (eq. 4.7, first term)."""
+
+    weights: tuple[float, ...] = (1.0,) * 6
+
+    def __call__(self, score: Score) -> float:
+        """Cost of the motion."""
+        return float(np.dot(self.weights, score.reversals_per_joint)) / float(sum(self.weights))
+
+
+@dataclass(frozen=True)
+class Travel:
+    """Weighted share of six full turns: theta_trv / (6 * 360 deg) (eq. 4.7, second term)."""
+
+    def __call__(self, score: Score) -> float:
+        """Cost of the motion."""
+        return score.travel / (6 * 2 * np.pi)
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A weighted sum of criteria; a motion that cannot be run costs 1 or more.
+
+    Attributes:
+        terms: weight and criterion, each.
+    """
+
+    terms: tuple[tuple[float, Criterion], ...]
+
+    def __call__(self, evaluation: Evaluation) -> float:
+        """Cost of an evaluated motion; each fault, jump and joint over its limit adds 1 where it cannot be run."""
+        if evaluation.score is None:
+            return float(len({finding.kind for finding in evaluation.findings}))
+        score = evaluation.score
+        return sum(weight * criterion(score) for weight, criterion in self.terms)
+
+
+thesis_objective = Objective(((6 / 7, Reversals()), (1 / 7, Travel())))
+"""Thesis eq. 4.7: 6/7 of the weight on reversals, 1/7 on travel, +1 for each of fault, jump and limit."""

@@ -1,0 +1,292 @@
+"""The arm: forward kinematics, inverse kinematics in all branches, and the two rate fields of the twist plane.
+
+Written from the cosines and sines of the joints, which come out of the inverse kinematics algebraically; joint angles
+(atan2) are taken only where a caller asks for them. Lengths in m, angles in rad. No kernel raises: a pose out of reach
+is False, or a row of NaN.
+
+A *posture* is one of the four arm solutions, 2 * (wrist centre behind axis 1) + (elbow below the line shoulder-wrist);
+a *branch* is 2 * posture + (A5 < 0). "Below" is judged with the arm reaching forward, and mirrored for the arm that
+reaches back, so that it is the sense in which the elbow bends and stays what it is when the arm swings over its top.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.kernels._jit import kernel
+
+# Below this sine of joint 5 the axes 4 and 6 coincide as far as double precision can tell.
+WRIST_SINGULAR = 1e-10
+
+
+@kernel
+def wrist_centre(R, p, c4):  # type: ignore[no-untyped-def]
+    """Intersection of axes 4 to 6 for a flange at p, turned by R."""
+    return p[0] - c4 * R[0, 2], p[1] - c4 * R[1, 2], p[2] - c4 * R[2, 2]
+
+
+@kernel
+def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-def]
+    """Cosines and sines of the model angles of one posture, with sin(q5) >= 0.
+
+    Args:
+        arm: `ArmGeometry`.
+        R: flange rotation, shape (3, 3).
+        wx: wrist centre, x [m]; wy, wz likewise.
+        posture: 0..3.
+        cs: out, shape (6, 2): cosine and sine of each model angle.
+
+    Returns:
+        whether the pose can be reached in this posture.
+    """
+    squared = wx * wx + wy * wy
+    ahead = squared - arm.b * arm.b
+    if not (ahead >= 0.0 and squared > 0.0):
+        return False
+    # wrist centre in the frame turned with axis 1: (x1, b, wz)
+    x1 = np.sqrt(ahead)
+    back = posture >= 2
+    if back:
+        x1 = -x1
+    cs[0, 0] = (wx * x1 + wy * arm.b) / squared
+    cs[0, 1] = (wy * x1 - wx * arm.b) / squared
+
+    # two links in the arm's plane: upper arm c2, forearm k = |(a2, c3)|, bent by phi at the elbow
+    x, z = x1 - arm.a1, wz - arm.c1
+    reach2 = x * x + z * z
+    k2 = arm.a2 * arm.a2 + arm.c3 * arm.c3
+    k = np.sqrt(k2)
+    cos_phi = (reach2 - arm.c2 * arm.c2 - k2) / (2.0 * arm.c2 * k)
+    bend2 = 1.0 - cos_phi * cos_phi
+    if not (bend2 >= 0.0 and reach2 > 0.0):
+        return False
+    sin_phi = np.sqrt(bend2)
+    below = posture % 2 == 1
+    if below != back:
+        sin_phi = -sin_phi
+    along, across = arm.c2 + k * cos_phi, k * sin_phi
+    cs[1, 0] = (along * z + across * x) / reach2
+    cs[1, 1] = (along * x - across * z) / reach2
+    cs[2, 0] = (cos_phi * arm.c3 + sin_phi * arm.a2) / k
+    cs[2, 1] = (sin_phi * arm.c3 - cos_phi * arm.a2) / k
+
+    # M = R03^T R = Rz(q4) Ry(q5) Rz(q6)
+    c1, s1 = cs[0, 0], cs[0, 1]
+    c23 = cs[1, 0] * cs[2, 0] - cs[1, 1] * cs[2, 1]
+    s23 = cs[1, 1] * cs[2, 0] + cs[1, 0] * cs[2, 1]
+    f0 = c1 * R[0, 2] + s1 * R[1, 2]
+    m02 = c23 * f0 - s23 * R[2, 2]
+    m12 = c1 * R[1, 2] - s1 * R[0, 2]
+    m22 = s23 * f0 + c23 * R[2, 2]
+    sin5 = np.sqrt(m02 * m02 + m12 * m12)
+    cs[4, 0], cs[4, 1] = m22, sin5
+    if sin5 > WRIST_SINGULAR:
+        g0 = c1 * R[0, 0] + s1 * R[1, 0]
+        g1 = c1 * R[0, 1] + s1 * R[1, 1]
+        cs[3, 0], cs[3, 1] = m02 / sin5, m12 / sin5
+        cs[5, 0] = -(s23 * g0 + c23 * R[2, 0]) / sin5
+        cs[5, 1] = (s23 * g1 + c23 * R[2, 1]) / sin5
+    else:  # axes 4 and 6 coincide: all of their common turn goes to joint 6
+        cs[3, 0], cs[3, 1] = 1.0, 0.0
+        m10 = c1 * R[1, 0] - s1 * R[0, 0]
+        m11 = c1 * R[1, 1] - s1 * R[0, 1]
+        cs[5, 0], cs[5, 1] = m11, m10
+    return True
+
+
+@kernel
+def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-untyped-def]
+    """Controller joint rates that move the wrist centre at v and turn the flange at o, for sin(q5) > 0.
+
+    The flipped wrist has the same rates but for joint 5, whose sign is the other (theory §1). At a singularity the
+    rates are NaN.
+
+    Args:
+        arm: `ArmGeometry`.
+        cs: cosines and sines of the model angles, shape (6, 2).
+        vx: velocity of the wrist centre, base frame; vy, vz likewise.
+        ox: angular velocity of the flange, base frame; oy, oz likewise.
+        out: out, shape (6,): rates of the controller angles.
+    """
+    c1, s1, c2, s2 = cs[0, 0], cs[0, 1], cs[1, 0], cs[1, 1]
+    c23 = c2 * cs[2, 0] - s2 * cs[2, 1]
+    s23 = s2 * cs[2, 0] + c2 * cs[2, 1]
+    ux, uz = arm.c2 * s2, arm.c2 * c2  # shoulder to elbow, in the arm's plane
+    fx, fz = arm.a2 * c23 + arm.c3 * s23, arm.c3 * c23 - arm.a2 * s23  # elbow to wrist centre
+    x1 = arm.a1 + ux + fx
+
+    q1 = (c1 * vy - s1 * vx) / x1
+    dx = c1 * vx + s1 * vy + arm.b * q1
+    det = ux * fz - uz * fx
+    q2 = -(fx * dx + fz * vz) / det
+    q23 = (ux * dx + uz * vz) / det
+
+    # what is left of the turning, seen in frame 3, is the wrist's
+    h0 = c1 * ox + s1 * oy
+    wx = c23 * h0 - s23 * (oz - q1)
+    wy = c1 * oy - s1 * ox - q23
+    wz = s23 * h0 + c23 * (oz - q1)
+    c4, s4, c5, s5 = cs[3, 0], cs[3, 1], cs[4, 0], cs[4, 1]
+    q6 = (c4 * wx + s4 * wy) / s5
+
+    out[0] = q1
+    out[1] = q2
+    out[2] = q23 - q2
+    out[3] = wz - c5 * q6
+    out[4] = c4 * wy - s4 * wx
+    out[5] = q6
+    singular = not (s5 > WRIST_SINGULAR and abs(x1) > 1e-12 and abs(det) > 1e-14)
+    for i in range(6):
+        out[i] = np.nan if singular else out[i] * arm.sign[i]
+
+
+@kernel
+def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # type: ignore[no-untyped-def]
+    """The two rate fields at one point of the twist plane, for sin(q5) > 0 (theory §1).
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        standoff: s [m].
+        psi: spin [rad].
+        posture: 0..3.
+        cs: out, shape (6, 2): cosines and sines of the model angles.
+        theta_s: out, shape (6,): d theta / d s [rad/m], controller angles.
+        theta_psi: out, shape (6,): d theta / d psi [1], controller angles.
+
+    Returns:
+        whether the pose can be reached in this posture.
+    """
+    c, s = np.cos(psi), np.sin(psi)
+    R0, F = plane.R_base_tcp0, plane.R_tcp_flange
+    R = np.empty((3, 3))
+    for i in range(3):
+        x, y, z = R0[i, 0] * c + R0[i, 1] * s, R0[i, 1] * c - R0[i, 0] * s, R0[i, 2]
+        for j in range(3):
+            R[i, j] = x * F[0, j] + y * F[1, j] + z * F[2, j]
+    # wrist centre: the tip, and the lever of the spin turned with it
+    zx, zy, zz = R0[0, 2], R0[1, 2], R0[2, 2]
+    w = plane.wrist
+    lx, ly = w[0] * c - w[1] * s, w[0] * s + w[1] * c
+    rx = R0[0, 0] * lx + R0[0, 1] * ly
+    ry = R0[1, 0] * lx + R0[1, 1] * ly
+    rz = R0[2, 0] * lx + R0[2, 1] * ly
+    along = standoff + w[2]
+    wx = plane.target[0] + along * zx + rx
+    wy = plane.target[1] + along * zy + ry
+    wz = plane.target[2] + along * zz + rz
+    if not solve_posture(arm, R, wx, wy, wz, posture, cs):
+        return False
+    joint_velocity(arm, cs, zx, zy, zz, 0.0, 0.0, 0.0, theta_s)
+    joint_velocity(arm, cs, zy * rz - zz * ry, zz * rx - zx * rz, zx * ry - zy * rx, zx, zy, zz, theta_psi)
+    return True
+
+
+@kernel
+def controller_angles(arm, cs, negative, out):  # type: ignore[no-untyped-def]
+    """Controller angles within (-pi, pi] of a solved posture.
+
+    Args:
+        arm: `ArmGeometry`.
+        cs: cosines and sines of the model angles with sin(q5) >= 0, shape (6, 2).
+        negative: whether A5 < 0 is wanted.
+        out: out, shape (6,).
+    """
+    flip = negative == (arm.sign[4] > 0.0)
+    for i in range(6):
+        c, s = cs[i, 0], cs[i, 1]
+        if flip and i == 4:
+            s = -s
+        elif flip and i > 2:
+            c, s = -c, -s
+        angle = (np.arctan2(s, c) + arm.offset[i]) * arm.sign[i]
+        if angle > np.pi:
+            angle -= 2.0 * np.pi
+        elif angle <= -np.pi:
+            angle += 2.0 * np.pi
+        out[i] = angle
+
+
+@kernel
+def flip_sign(arm, branch):  # type: ignore[no-untyped-def]
+    """What the rate of joint 5 is multiplied by on this branch: 1 where sin(q5) > 0, else -1."""
+    return 1.0 if (branch % 2 == 0) == (arm.sign[4] > 0.0) else -1.0
+
+
+@kernel
+def inverse(arm, T, out):  # type: ignore[no-untyped-def]
+    """All eight branches of many poses.
+
+    Args:
+        arm: `ArmGeometry`.
+        T: flange poses, shape (N, 4, 4).
+        out: out, shape (N, 8, 6): controller angles within (-pi, pi]; NaN rows where a branch cannot reach.
+    """
+    cs = np.empty((6, 2))
+    for n in range(T.shape[0]):
+        R = T[n, :3, :3]
+        wx, wy, wz = wrist_centre(R, T[n, :3, 3], arm.c4)
+        for posture in range(4):
+            if solve_posture(arm, R, wx, wy, wz, posture, cs):
+                controller_angles(arm, cs, False, out[n, 2 * posture])
+                controller_angles(arm, cs, True, out[n, 2 * posture + 1])
+            else:
+                out[n, 2 * posture : 2 * posture + 2] = np.nan
+
+
+@kernel
+def forward(arm, joints, out):  # type: ignore[no-untyped-def]
+    """Flange poses of controller angles.
+
+    Args:
+        arm: `ArmGeometry`.
+        joints: controller angles, shape (N, 6).
+        out: out, shape (N, 4, 4).
+    """
+    q = np.empty(6)
+    for n in range(joints.shape[0]):
+        for i in range(6):
+            q[i] = joints[n, i] * arm.sign[i] - arm.offset[i]
+        c1, s1, c2, s2, c23, s23 = (
+            np.cos(q[0]), np.sin(q[0]), np.cos(q[1]), np.sin(q[1]), np.cos(q[1] + q[2]), np.sin(q[1] + q[2]),
+        )  # fmt: skip
+        c4, s4, c5, s5, c6, s6 = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4]), np.cos(q[5]), np.sin(q[5])
+        x1 = arm.a1 + arm.c2 * s2 + arm.a2 * c23 + arm.c3 * s23
+        z1 = arm.c1 + arm.c2 * c2 + arm.c3 * c23 - arm.a2 * s23
+        for j in range(3):
+            # columns of Rz(q4) Ry(q5) Rz(q6), then turned by R03 = Rz(q1) Ry(q2 + q3)
+            if j == 0:
+                mx, my, mz = c4 * c5 * c6 - s4 * s6, s4 * c5 * c6 + c4 * s6, -s5 * c6
+            elif j == 1:
+                mx, my, mz = -c4 * c5 * s6 - s4 * c6, c4 * c6 - s4 * c5 * s6, s5 * s6
+            else:
+                mx, my, mz = c4 * s5, s4 * s5, c5
+            px = c23 * mx + s23 * mz
+            out[n, 0, j] = c1 * px - s1 * my
+            out[n, 1, j] = s1 * px + c1 * my
+            out[n, 2, j] = c23 * mz - s23 * mx
+            out[n, 3, j] = 0.0
+        out[n, 0, 3] = c1 * x1 - s1 * arm.b + arm.c4 * out[n, 0, 2]
+        out[n, 1, 3] = s1 * x1 + c1 * arm.b + arm.c4 * out[n, 1, 2]
+        out[n, 2, 3] = z1 + arm.c4 * out[n, 2, 2]
+        out[n, 3, 3] = 1.0
+
+
+@kernel
+def rates_along(arm, plane, standoff, psi, posture, theta_s, theta_psi):  # type: ignore[no-untyped-def]
+    """`twist_field` at many points, for sin(q5) > 0; NaN rows where the posture cannot reach.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        standoff: s [m], shape (N,).
+        psi: spin [rad], shape (N,).
+        posture: 0..3.
+        theta_s: out, shape (N, 6) [rad/m].
+        theta_psi: out, shape (N, 6) [1].
+    """
+    cs = np.empty((6, 2))
+    for n in range(standoff.shape[0]):
+        if not twist_field(arm, plane, standoff[n], psi[n], posture, cs, theta_s[n], theta_psi[n]):
+            theta_s[n] = np.nan
+            theta_psi[n] = np.nan

@@ -1,0 +1,140 @@
+"""The typed, shape-checked face of `kernels.arm`: poses, joints, and the two rate fields of a hole's twist plane."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zerorev.errors import InputError
+from zerorev.kernels import arm as kernels
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = [
+    "TwistPlane",
+    "critical_rates",
+    "forward",
+    "inverse",
+    "joint_rates",
+    "tcp_pose",
+    "twist_plane",
+    "wrist_offset",
+]
+
+
+class TwistPlane(NamedTuple):
+    """What a kernel needs to know of a hole and a tool (theory §1); a NamedTuple, so that kernels take it whole.
+
+    Attributes:
+        target: bottom of the hole [m], shape (3,).
+        R_base_tcp0: rotation of the tcp frame at psi = 0, shape (3, 3).
+        R_tcp_flange: rotation of the flange in the tcp frame, shape (3, 3).
+        wrist: wrist centre in the tcp frame [m], shape (3,).
+    """
+
+    target: Array
+    R_base_tcp0: Array
+    R_tcp_flange: Array
+    wrist: Array
+
+
+def twist_plane(robot: Robot, tool: Tool, hole: Hole) -> TwistPlane:
+    """The twist plane of a hole drilled by a tool on a robot (theory §1)."""
+    return TwistPlane(
+        hole.target,
+        np.ascontiguousarray(tcp_pose(hole, 0.0, 0.0)[:3, :3]),
+        np.ascontiguousarray(tool.T_flange_tcp[:3, :3].T),
+        _wrist_in_tcp(robot, tool),
+    )
+
+
+def _wrist_in_tcp(robot: Robot, tool: Tool) -> Array:
+    R, tip = tool.T_flange_tcp[:3, :3], tool.T_flange_tcp[:3, 3]
+    return np.asarray(R.T @ (np.array([0.0, 0.0, -robot.arm.c4]) - tip))
+
+
+def wrist_offset(robot: Robot, tool: Tool) -> float:
+    """Distance e [m] of the wrist centre from the drill axis, the lever of the spin (theory §1)."""
+    wrist = _wrist_in_tcp(robot, tool)
+    return float(np.hypot(wrist[0], wrist[1]))
+
+
+def tcp_pose(hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike) -> Array:
+    """T_base_tcp at stand-offs [m] and spins [rad] of one broadcast shape (...,); returns (..., 4, 4)."""
+    standoff, psi = np.broadcast_arrays(np.asarray(standoff, dtype=float), np.asarray(psi, dtype=float))
+    z, y0 = -hole.direction, hole.psi_zero
+    x0 = np.cross(y0, z)
+    c, s = np.cos(psi)[..., None], np.sin(psi)[..., None]
+    T = np.zeros((*psi.shape, 4, 4))
+    T[..., :3, 0] = c * x0 + s * y0
+    T[..., :3, 1] = c * y0 - s * x0
+    T[..., :3, 2] = z
+    T[..., :3, 3] = hole.target + standoff[..., None] * z
+    T[..., 3, 3] = 1.0
+    return T
+
+
+def forward(robot: Robot, joints: npt.ArrayLike) -> Array:
+    """Flange poses T_base_flange, shape (..., 4, 4), of controller angles [rad], shape (..., 6).
+
+    Raises:
+        InputError: the last axis is not of six joints.
+    """
+    joints = np.asarray(joints, dtype=float)
+    if joints.shape[-1:] != (6,):
+        raise InputError(f"joints of shape {joints.shape}", accepted="(..., 6)")
+    flat = np.ascontiguousarray(joints.reshape(-1, 6))
+    out = np.empty((len(flat), 4, 4))
+    kernels.forward(robot.arm, flat, out)
+    return out.reshape(*joints.shape[:-1], 4, 4)
+
+
+def inverse(robot: Robot, T_base_flange: npt.ArrayLike) -> Array:
+    """Controller angles within (-pi, pi], shape (..., 8, 6), of flange poses (..., 4, 4).
+
+    All eight branches in their fixed order (conventions: branch), a row of NaN where one cannot reach. Joint limits are
+    not looked at.
+
+    Raises:
+        InputError: the last axes are not a pose.
+    """
+    T = np.asarray(T_base_flange, dtype=float)
+    if T.shape[-2:] != (4, 4):
+        raise InputError(f"poses of shape {T.shape}", accepted="(..., 4, 4)")
+    flat = np.ascontiguousarray(T.reshape(-1, 4, 4))
+    out = np.empty((len(flat), 8, 6))
+    kernels.inverse(robot.arm, flat, out)
+    return out.reshape(*T.shape[:-2], 8, 6)
+
+
+def joint_rates(
+    robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike
+) -> tuple[Array, Array]:
+    """theta_s [rad/m] and theta_psi [1], each (..., 8, 6), at points (...,) of the hole's twist plane (theory §1).
+
+    NaN where a branch cannot reach, and at the singularities of shoulder, elbow and wrist.
+    """
+    standoff, psi = np.broadcast_arrays(np.asarray(standoff, dtype=float), np.asarray(psi, dtype=float))
+    s, p = np.ascontiguousarray(standoff.ravel()), np.ascontiguousarray(psi.ravel())
+    plane = twist_plane(robot, tool, hole)
+    fields = np.empty((2, 4, s.size, 6))
+    for posture in range(4):
+        kernels.rates_along(robot.arm, plane, s, p, posture, fields[0, posture], fields[1, posture])
+    # the two wrist flips share their rates, but for the sign of joint 5
+    branches = np.repeat(np.moveaxis(fields, 1, 2), 2, axis=2)
+    branches[..., 4] *= [kernels.flip_sign(robot.arm, branch) for branch in range(8)]
+    theta_s, theta_psi = branches.reshape(2, *standoff.shape, 8, 6)
+    return theta_s, theta_psi
+
+
+def critical_rates(
+    robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike
+) -> Array:
+    """kappa [rad/m], shape (..., 8, 6): the twist rates at which a joint stands still (theory §2)."""
+    theta_s, theta_psi = joint_rates(robot, tool, hole, standoff, psi)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(-theta_s / theta_psi)
