@@ -1,0 +1,86 @@
+"""Robotic drilling without joint reversals: robot, tool and holes in; the exact best motion, proven, out.
+
+The names below are the public ones. They are imported when first used, so that `import zerorev` is quick; the kernels
+behind `plan` are compiled on first use, which says so once, and cached.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
+    from zerorev.evaluation import evaluate
+    from zerorev.model.files import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
+    from zerorev.model.hole import Hole
+    from zerorev.model.job import Job, Settings
+    from zerorev.model.plan import Finding, HolePlan, Plan, Score
+    from zerorev.model.profile import Profile
+    from zerorev.model.robot import ArmGeometry, JointLimits, Robot
+    from zerorev.model.tool import Tool
+    from zerorev.planning import plan, plan_job
+    from zerorev.program.export import export
+    from zerorev.verify.check import verify_plan
+
+__all__ = [
+    "ArmGeometry",
+    "Finding",
+    "Hole",
+    "HolePlan",
+    "InputError",
+    "Job",
+    "JointLimits",
+    "NotExportableError",
+    "OutputError",
+    "Plan",
+    "Profile",
+    "Robot",
+    "Score",
+    "Settings",
+    "Tool",
+    "ZerorevError",
+    "evaluate",
+    "export",
+    "plan",
+    "plan_job",
+    "read_job",
+    "read_plan",
+    "read_robot",
+    "read_tool",
+    "robot_names",
+    "tool_names",
+    "verify_plan",
+    "write_plan",
+]
+
+_HOMES = {
+    "errors": ("InputError", "NotExportableError", "OutputError", "ZerorevError"),
+    "evaluation": ("evaluate",),
+    "model.files": (
+        "read_job", "read_plan", "read_robot", "read_tool", "robot_names", "tool_names", "write_plan",
+    ),
+    "model.hole": ("Hole",),
+    "model.job": ("Job", "Settings"),
+    "model.plan": ("Finding", "HolePlan", "Plan", "Score"),
+    "model.profile": ("Profile",),
+    "model.robot": ("ArmGeometry", "JointLimits", "Robot"),
+    "model.tool": ("Tool",),
+    "planning": ("plan", "plan_job"),
+    "program.export": ("export",),
+    "verify.check": ("verify_plan",),
+}  # fmt: skip
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its home when it is first asked for (PEP 562)."""
+    for home, names in _HOMES.items():
+        if name in names:
+            value = getattr(import_module(f"zerorev.{home}"), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module 'zerorev' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -35,6 +35,7 @@ __all__ = [
 NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_SEGMENT = 200
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
+CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a segment is seen
 
 
 @dataclass(frozen=True)
@@ -140,11 +141,13 @@ def _turning_points(
             return sense * outward_rates(robot, tool, hole, branch, standoff, psi, slope)
 
         x = np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT)
-        x = _with_closer_looks(x, np.abs(rates(x)))
+        for _ in range(CLOSER_LOOKS):
+            x = _with_closer_looks(x, np.abs(rates(x)))
         r = rates(x)
-        slowest = np.fmin(slowest, np.abs(r).min(axis=0))
+        slowest = np.fmin(slowest, np.fmin.reduce(np.abs(r), axis=0))
         for i in range(6):
-            signs = np.where(np.abs(r[:, i]) <= NIL_RATE, 0.0, np.sign(r[:, i]))
+            # NaN, a path that touches a singularity, tells no direction either
+            signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
             for n in np.flatnonzero(signs):
                 if direction[i] and signs[n] != direction[i]:
                     # a segment's first sample turns at the breakpoint itself, any other between it and the one before
@@ -158,9 +161,14 @@ def _turning_points(
 
 
 def _with_closer_looks(x: Array, speed: Array) -> Array:
-    inner = speed[1:-1]
-    dips = np.flatnonzero(((inner <= speed[:-2]) & (inner <= speed[2:])).any(axis=1)) + 1
-    return np.unique(np.concatenate([x, *(np.linspace(x[n - 1], x[n + 1], CLOSER_LOOK) for n in dips)]))
+    before, after = np.full((2, *speed.shape), np.inf)
+    before[1:], after[:-1] = speed[:-1], speed[1:]
+    # neither a joint that stands still nor one of constant speed dips, whatever their last digits do
+    rise = np.fmax(before, after) - speed
+    dips = (speed <= before) & (speed <= after) & (speed > NIL_RATE) & (rise > 1e-6 * speed)
+    last = len(x) - 1
+    looks = (np.linspace(x[max(n - 1, 0)], x[min(n + 1, last)], CLOSER_LOOK) for n in np.flatnonzero(dips.any(axis=1)))
+    return np.unique(np.concatenate([x, *looks]))
 
 
 def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-def]

@@ -81,16 +81,15 @@ def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-d
     sin5 = np.sqrt(m02 * m02 + m12 * m12)
     cs[4, 0], cs[4, 1] = m22, sin5
     if sin5 > WRIST_SINGULAR:
-        g0 = c1 * R[0, 0] + s1 * R[1, 0]
-        g1 = c1 * R[0, 1] + s1 * R[1, 1]
-        cs[3, 0], cs[3, 1] = m02 / sin5, m12 / sin5
-        cs[5, 0] = -(s23 * g0 + c23 * R[2, 0]) / sin5
-        cs[5, 1] = (s23 * g1 + c23 * R[2, 1]) / sin5
+        c4, s4 = m02 / sin5, m12 / sin5
     else:  # axes 4 and 6 coincide: all of their common turn goes to joint 6
-        cs[3, 0], cs[3, 1] = 1.0, 0.0
-        m10 = c1 * R[1, 0] - s1 * R[0, 0]
-        m11 = c1 * R[1, 1] - s1 * R[0, 1]
-        cs[5, 0], cs[5, 1] = m11, m10
+        c4, s4 = 1.0, 0.0
+    cs[3, 0], cs[3, 1] = c4, s4
+    # joint 6 from Rz(-q4) M, so that it makes good what q4 lacks in precision where sin(q5) is small
+    g0 = c1 * R[0, 0] + s1 * R[1, 0]
+    g1 = c1 * R[0, 1] + s1 * R[1, 1]
+    cs[5, 0] = c4 * (c1 * R[1, 1] - s1 * R[0, 1]) - s4 * (c23 * g1 - s23 * R[2, 1])
+    cs[5, 1] = c4 * (c1 * R[1, 0] - s1 * R[0, 0]) - s4 * (c23 * g0 - s23 * R[2, 0])
     return True
 
 
@@ -115,9 +114,15 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     fx, fz = arm.a2 * c23 + arm.c3 * s23, arm.c3 * c23 - arm.a2 * s23  # elbow to wrist centre
     x1 = arm.a1 + ux + fx
 
+    c4, s4, c5, s5 = cs[3, 0], cs[3, 1], cs[4, 0], cs[4, 1]
+    det = ux * fz - uz * fx
+    if not (s5 > WRIST_SINGULAR and abs(x1) > 1e-12 and abs(det) > 1e-14):
+        for i in range(6):
+            out[i] = np.nan
+        return
+
     q1 = (c1 * vy - s1 * vx) / x1
     dx = c1 * vx + s1 * vy + arm.b * q1
-    det = ux * fz - uz * fx
     q2 = -(fx * dx + fz * vz) / det
     q23 = (ux * dx + uz * vz) / det
 
@@ -126,7 +131,6 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     wx = c23 * h0 - s23 * (oz - q1)
     wy = c1 * oy - s1 * ox - q23
     wz = s23 * h0 + c23 * (oz - q1)
-    c4, s4, c5, s5 = cs[3, 0], cs[3, 1], cs[4, 0], cs[4, 1]
     q6 = (c4 * wx + s4 * wy) / s5
 
     out[0] = q1
@@ -135,9 +139,8 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     out[3] = wz - c5 * q6
     out[4] = c4 * wy - s4 * wx
     out[5] = q6
-    singular = not (s5 > WRIST_SINGULAR and abs(x1) > 1e-12 and abs(det) > 1e-14)
     for i in range(6):
-        out[i] = np.nan if singular else out[i] * arm.sign[i]
+        out[i] *= arm.sign[i]
 
 
 @kernel

@@ -11,6 +11,8 @@ from zerorev.errors import InputError
 
 Array: TypeAlias = npt.NDArray[np.float64]
 
+UNIT_TOLERANCE = 4e-12  # more than the rounding in a plan file can change a unit vector's length by
+
 
 def finite(value: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Array:
     """Return `value` as a fresh float array of the given shape.
@@ -31,7 +33,7 @@ def finite(value: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Array:
 
 
 def unit(value: npt.ArrayLike, name: str) -> Array:
-    """Return the 3-vector `value` scaled to length one.
+    """Return the 3-vector `value` scaled to length one; one that is so already stays as it is, digit for digit.
 
     Raises:
         InputError: not three finite numbers, or all of them zero.
@@ -40,7 +42,7 @@ def unit(value: npt.ArrayLike, name: str) -> Array:
     length = float(np.linalg.norm(vector))
     if length < 1e-12:
         raise InputError("the zero vector has no direction", where=name, accepted="a vector of any length above 0")
-    return vector / length
+    return vector if abs(length - 1) < UNIT_TOLERANCE else vector / length
 
 
 def rotation_rpy(roll: float, pitch: float, yaw: float) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.model._arrays import Array, finite, unit
+from zerorev.model._arrays import UNIT_TOLERANCE, Array, finite, unit
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
 
@@ -88,9 +88,11 @@ def psi_zero_vector(
 
 
 def _perpendicular(vector: Array, direction: Array, where: str, name: str = "psi reference") -> Array:
-    across = finite(vector, (3,), f"{where}, {name}")
-    across = across - (across @ direction) * direction
+    given = finite(vector, (3,), f"{where}, {name}")
+    across = given - (given @ direction) * direction
     length = float(np.linalg.norm(across))
+    if abs(given @ direction) < UNIT_TOLERANCE and abs(length - 1) < UNIT_TOLERANCE:
+        return given  # of a plan file: to stay as it is, digit for digit
     if length < 1e-6 * max(1.0, float(np.linalg.norm(vector))):
         raise InputError(f"{name} is parallel to the drill axis, so it cannot count the spin", where=where,
                          accepted=f"another of {', '.join(REFERENCES)}, or a vector across the drill axis")

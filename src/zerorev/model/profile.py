@@ -68,5 +68,5 @@ class Profile:
 
     @property
     def twist_rate(self) -> Array:
-        """d psi / d s of each segment, read outwards [rad/m], shape (n - 1,)."""
+        """The rate d psi / d s of each segment, read outwards [rad/m], shape (n - 1,)."""
         return np.diff(self.psi) / np.diff(self.standoff)

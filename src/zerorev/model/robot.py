@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -93,13 +94,11 @@ class Robot:
             raise InputError("a joint sign is neither 1 nor -1", where=f"robot {self.name}", accepted="1 or -1")
         offset = finite(arm.offset, (6,), f"robot {self.name}, offset")
         # plain floats throughout: an int would be another type, and another compilation, to the kernels
-        object.__setattr__(
-            self,
-            "arm",
-            ArmGeometry(*map(float, lengths), sign=_six(arm.sign), offset=_six(offset)),
-        )
+        a1, a2, b, c1, c2, c3, c4 = map(float, lengths)
+        object.__setattr__(self, "arm", ArmGeometry(a1, a2, b, c1, c2, c3, c4, six(arm.sign), six(offset)))
 
 
-def _six(values: Array | tuple[float, ...]) -> Six:
-    a, b, c, d, e, f = (float(v) for v in values)
+def six(values: Array | Sequence[float]) -> Six:
+    """Six plain floats."""
+    a, b, c, d, e, f = map(float, values)
     return (a, b, c, d, e, f)

@@ -1,0 +1,197 @@
+"""Reading and writing the files of zerorev: robot, tool, job (YAML, CSV) and plan (JSON).
+
+A file becomes plain data (`text`), a checked form (`schema`, `validation`) and then a noun in SI (`conversion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from zerorev.errors import InputError
+from zerorev.model.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job
+from zerorev.model.plan import Plan
+from zerorev.model.plan_conversion import plan_data, plan_from
+from zerorev.model.plan_schema import PlanFile
+from zerorev.model.robot import Robot
+from zerorev.model.schema import Form, HoleForm, JobFile, RobotFile, ToolFile
+from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text, write_text, yaml_document
+from zerorev.model.tool import Tool
+from zerorev.model.validation import checked, inside
+
+__all__ = [
+    "job_from_dict",
+    "plan_to_json",
+    "read_job",
+    "read_plan",
+    "read_robot",
+    "read_tool",
+    "robot_names",
+    "tool_names",
+    "write_plan",
+    "write_schemas",
+    "write_text",
+]
+
+
+def robot_names() -> list[str]:
+    """Names of the robots that ship with zerorev."""
+    return _shipped("robots")
+
+
+def tool_names() -> list[str]:
+    """Names of the tools that ship with zerorev."""
+    return _shipped("tools")
+
+
+def read_robot(name_or_path: str | Path, folder: str | Path = ".") -> Robot:
+    """A robot that ships with zerorev, by name, or one of a robot file.
+
+    Args:
+        name_or_path: a shipped name, or a path: it has a separator or ends in .yaml, .yml or .json.
+        folder: where a relative path starts.
+
+    Raises:
+        InputError: an unknown name, no such file, or a file that is not a robot.
+    """
+    document = _named_document(name_or_path, folder, "robots")
+    form = checked(RobotFile, document)
+    with inside(document.file):
+        return robot_from(
+            form,
+            sources=form.sources,
+            second_sources=tuple(form.second_sources),
+            caveats=tuple(form.caveats),
+        )
+
+
+def read_tool(name_or_path: str | Path, folder: str | Path = ".") -> Tool:
+    """A tool that ships with zerorev, by name, or one of a tool file.
+
+    Args:
+        name_or_path: a shipped name, or a path: it has a separator or ends in .yaml, .yml or .json.
+        folder: where a relative path starts.
+
+    Raises:
+        InputError: an unknown name, no such file, or a file that is not a tool.
+    """
+    document = _named_document(name_or_path, folder, "tools")
+    form = checked(ToolFile, document)
+    with inside(document.file):
+        return tool_from(form, sources=form.sources)
+
+
+def read_job(path: str | Path) -> Job:
+    """The job of a job file, its holes in the base frame; paths in it are relative to it.
+
+    Raises:
+        InputError: anything in the file, its CSV, its robot or its tool that cannot be used.
+    """
+    path = Path(path)
+    document = yaml_document(read_text(path, "a job file (YAML)"), str(path))
+    return _job(document, path.parent, path.stem)
+
+
+def job_from_dict(mapping: Mapping[str, Any], folder: str | Path = ".") -> Job:
+    """The job of a mapping with the keys of a job file; paths in it are relative to `folder`.
+
+    Raises:
+        InputError: anything in it that cannot be used.
+    """
+    return _job(Document("job", dict(mapping)), Path(folder), "job")
+
+
+def read_plan(path: str | Path) -> Plan:
+    """The plan of a plan file.
+
+    Raises:
+        InputError: another kind of file, cut short, altered, or with values that cannot be used.
+    """
+    document = json_document(read_text(Path(path), "a plan file (JSON)"), str(path))
+    form = checked(PlanFile, document)
+    with inside(document.file):
+        return plan_from(form)
+
+
+def plan_to_json(plan: Plan) -> dict[str, Any]:
+    """The plan as plain data, exactly as a plan file holds it.
+
+    Raises:
+        InputError: a number that no plan file may hold (NaN or infinite where a number is needed).
+    """
+    data = plan_data(plan)
+    checked(PlanFile, Document("plan", data))
+    return data
+
+
+def write_plan(plan: Plan, path: str | Path) -> None:
+    """Write a plan file, whole or not at all.
+
+    Raises:
+        InputError: the plan holds a number that no plan file may hold.
+        OutputError: the file cannot be written.
+    """
+    write_text(path, json_text(plan_to_json(plan)))
+
+
+def write_schemas(folder: str | Path) -> None:
+    """Write the JSON Schemas of the job and plan files, job.schema.json and plan.schema.json, into a folder."""
+    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile}
+    for name, form in forms.items():
+        schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"} | form.model_json_schema()
+        write_text(Path(folder) / f"{name}.schema.json", json_text(schema))
+
+
+def _job(document: Document, folder: Path, name: str) -> Job:
+    form = checked(JobFile, document)
+    with inside(document.where(("robot",))):
+        robot = read_robot(form.robot, folder)
+    with inside(document.where(("tool",))):
+        tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
+    with inside(document.file):
+        settings, T_base_part = settings_from(form), frame_from(form.part_frame)
+    holes: dict[str, Hole] = {}
+    for where, hole in _hole_forms(form, document, folder):
+        if hole.id in holes:
+            raise InputError(f"the id '{hole.id}' is used twice", where=where, accepted="ids that differ")
+        with inside(where):
+            holes[hole.id] = hole_from(hole, form.psi_reference, tool, T_base_part)
+    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name)
+
+
+def _hole_forms(form: JobFile, document: Document, folder: Path) -> list[tuple[str, HoleForm]]:
+    """The holes of a job or of its CSV, each with where it stands."""
+    if not isinstance(form.holes, str):
+        return [(document.where(("holes", i)), hole) for i, hole in enumerate(form.holes)]
+    path, holes = folder / form.holes, []
+    with inside(document.where(("holes",))):
+        text = read_text(path, "a CSV file of holes, or a list of holes")
+    for line, label, numbers in csv_rows(text, str(path), "id", ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")):
+        mapping = {"id": label, "target_mm": numbers[:3], "direction": numbers[3:6], "depth_mm": numbers[6]}
+        row = Document(str(path), mapping, {(): line})
+        holes.append((row.where(), checked(HoleForm, row)))
+    if not holes:
+        raise InputError("no holes", where=str(path), accepted="one row or more below the header")
+    return holes
+
+
+def _shipped(kind: str) -> list[str]:
+    folder = resources.files("zerorev.model") / kind
+    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
+
+
+def _named_document(name_or_path: str | Path, folder: str | Path, kind: str) -> Document:
+    """A shipped file by its name, or a file by its path."""
+    name, shipped, what = str(name_or_path), _shipped(kind), kind.removesuffix("s")
+    if name in shipped:
+        resource = resources.files("zerorev.model") / kind / f"{name}.yaml"
+        return yaml_document(resource.read_text(encoding="utf-8"), f"{name}.yaml")
+    if "/" in name or "\\" in name or name.endswith((".yaml", ".yml", ".json")):
+        path = Path(folder) / name
+        return yaml_document(read_text(path, f"a {what} file (YAML)"), str(path))
+    accepted = f"{', '.join(shipped)}, or the path of a {what} file ending in .yaml"
+    raise InputError(f"unknown {what} '{name}'", accepted=accepted)

@@ -1,0 +1,159 @@
+"""The form of the plan file: what comes out of planning, complete enough to be checked and exported alone."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field
+
+from zerorev.model.schema import (
+    Branch,
+    Breakpoints,
+    Form,
+    FrameForm,
+    Name,
+    NotNegative,
+    Positive,
+    RobotForm,
+    SettingsForm,
+    Six,
+    Three,
+    ToolForm,
+)
+
+__all__ = ["BaselineForm", "FindingForm", "GivenForm", "JointsDegForm", "PlanFile", "PlanHole", "VerifiedForm"]
+
+SixMeasured = Annotated[list[float | None], Field(min_length=6, max_length=6)]
+SixCounts = Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=6, max_length=6)]
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+
+class PlanRobot(RobotForm):
+    """The robot of a plan."""
+
+    sha256: Sha256 = Field(description="64 hexadecimal digits: SHA-256 of the robot's numbers")
+
+
+class PlanTool(ToolForm):
+    """The tool of a plan."""
+
+    sha256: Sha256 = Field(description="64 hexadecimal digits: SHA-256 of the tool's numbers")
+
+
+class FindingForm(Form):
+    """Something a user should know."""
+
+    level: Literal["error", "warning", "info"] = Field(description="error, warning or info")
+    kind: str = Field(description="text: a fixed word for machines")
+    message: str = Field(description="text: one sentence for people")
+    hole: str | None = Field(description="text: the hole's id; or null: the whole plan is meant")
+
+
+class EventForm(Form):
+    """A reversal."""
+
+    joint: Annotated[int, Field(ge=1, le=6)] = Field(description="a whole number from 1 to 6")
+    leg: Literal["plunge", "target", "retract"] = Field(description="plunge, target (at the corner) or retract")
+    standoff_mm: float = Field(description="a number [mm]: where")
+
+
+class GivenForm(Form):
+    """What the job fixed beforehand."""
+
+    standoff_mm: Breakpoints | None = Field(description="stand-offs [mm] of the given motion, in order; or null")
+    psi_deg: Breakpoints | None = Field(description="spins [deg] of the given motion; or null: it was searched for")
+    branch: Branch | None = Field(description="a whole number from 0 to 7: the branch asked for; or null: any")
+
+
+class JointsDegForm(Form):
+    """The joints along a motion: controller angles with turns."""
+
+    start: Six = Field(description="six numbers [deg] at the start")
+    target: Six = Field(description="six numbers [deg] at the corner")
+    end: Six = Field(description="six numbers [deg] at the end")
+    breakpoints: Annotated[list[Six], Field(min_length=3)] = Field(
+        description="six numbers [deg] for each entry of standoff_mm"
+    )
+
+
+class BaselineForm(Form):
+    """The same hole drilled with constant spin, psi = psi_start, on the plan's branch."""
+
+    reversals: int = Field(ge=0, description="a whole number: reversals of all joints")
+    reversals_per_joint: SixCounts = Field(description="six whole numbers")
+    travel_deg: NotNegative = Field(description="a number [deg]: sum over the joints of the angle moved")
+
+
+class VerifiedForm(Form):
+    """What the independent check looked at, and what it found."""
+
+    passed: bool = Field(description="true or false: whether the plan's claims hold")
+    samples: int = Field(ge=0, description="a whole number: points looked at on the two legs")
+    blend_samples: int = Field(ge=0, description="a whole number: points looked at on the blended corner")
+    reversals_per_joint: SixCounts = Field(description="six whole numbers, as counted by the check")
+    max_position_error_mm: float | None = Field(description="a number [mm]: the tip off its path; null: undefined")
+    max_rotation_error_deg: float | None = Field(description="a number [deg]: the tool off its pose; null: undefined")
+    max_joint_step_deg: float | None = Field(
+        description="a number [deg]: greatest step between neighbouring samples; null: undefined"
+    )
+    min_limit_distance_deg: float | None = Field(
+        description="a number [deg]: least distance to a joint limit; null: undefined"
+    )
+    failures: list[str] = Field(description="a list of text: one sentence a failed check")
+
+
+class PlanHole(Form):
+    """One hole's answer; what describes a motion is null where there is none."""
+
+    id: Name = Field(description="text: the hole's id")
+    target_mm: Three = Field(description="three numbers [mm]: bottom of the stroke, base frame")
+    direction: Three = Field(description="three numbers: unit vector into the material, base frame")
+    depth_mm: Positive = Field(description="a number above 0 [mm]: the stroke")
+    psi_zero: Three = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
+    given: GivenForm | None = Field(
+        default=None,
+        description="a mapping of standoff_mm, psi_deg and branch as the job fixed them; or null: it fixed none",
+    )
+    status: Literal["planned", "evaluated", "infeasible"] = Field(
+        description="planned (searched for), evaluated (given and looked at) or infeasible (no motion at all)"
+    )
+    branch: Branch | None = Field(description="a whole number from 0 to 7: the IK branch")
+    standoff_mm: Breakpoints | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
+    psi_deg: Breakpoints | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
+    joints_deg: JointsDegForm | None = Field(description="a mapping of start, target, end and breakpoints")
+    reversals: Annotated[int, Field(ge=0)] | None = Field(description="a whole number: reversals of all joints")
+    reversals_per_joint: SixCounts | None = Field(description="six whole numbers")
+    events: list[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
+    travel_deg: NotNegative | None = Field(description="a number [deg]: sum over the joints of the angle moved")
+    min_rate_deg_per_mm: SixMeasured | None = Field(
+        description="six numbers [deg/mm]: slowest motion of each joint at any point; null: undefined"
+    )
+    mean_rate_deg_per_mm: SixMeasured | None = Field(
+        description="six numbers [deg/mm]: each joint's lesser mean motion of the two legs; null: undefined"
+    )
+    limit_distance_deg: SixMeasured | None = Field(
+        description="six numbers [deg]: least distance to a joint limit, negative beyond it; null: undefined"
+    )
+    wrist_offset_mm: NotNegative = Field(description="a number [mm]: distance of the wrist centre from the drill axis")
+    baseline: BaselineForm | None = Field(
+        description="a mapping of reversals, reversals_per_joint and travel_deg; or null: it cannot be run"
+    )
+    verified: VerifiedForm | None = Field(
+        description="a mapping of what was checked, and the outcome; or null: it was not"
+    )
+    findings: list[FindingForm] = Field(description="a list of level, kind, message and hole")
+
+
+class PlanFile(Form):
+    """A plan file, JSON: complete enough to be checked and exported alone."""
+
+    model_config = ConfigDict(title="zerorev plan")
+
+    format: Literal["zerorev.plan/1"] = Field(description="zerorev.plan/1")
+    name: Name = Field(description="text: name of the job")
+    robot: PlanRobot = Field(description="a mapping: name, numbers and sha256 of the robot")
+    tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
+    part_frame: FrameForm = Field(description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame")
+    settings: SettingsForm = Field(description="a mapping of the job's settings")
+    holes: list[PlanHole] = Field(min_length=1, description="a list of one hole or more, in the job's order")
+    findings: list[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")

@@ -1,0 +1,95 @@
+"""From a plan to the text of a program: build, preflight, write in the dialect of a controller."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from zerorev.errors import InputError, NotExportableError
+from zerorev.model.plan import Finding, Plan
+from zerorev.program.krl import refuse_other_makers, to_krl
+from zerorev.program.krl_text import identifier
+from zerorev.program.neutral import Program, build_program
+from zerorev.program.preflight import preflight
+
+__all__ = ["CONTROLLERS", "Controller", "Exported", "export"]
+
+
+@dataclass(frozen=True)
+class Controller:
+    """A dialect.
+
+    Attributes:
+        suffix: of its files.
+        program_name: makes a name that the controller accepts of any text.
+        check_robot: (manufacturer, robot) -> raises `NotExportableError` where the controller cannot drive it.
+        write: (program, name, findings, version) -> text.
+    """
+
+    suffix: str
+    program_name: Callable[[str], str]
+    check_robot: Callable[[str, str], None]
+    write: Callable[[Program, str, tuple[Finding, ...], str | None], str]
+
+
+def _write_krl(program: Program, name: str, findings: tuple[Finding, ...], version: str | None) -> str:
+    return to_krl(program, name=name, findings=findings, version=version)
+
+
+CONTROLLERS: dict[str, Controller] = {"krl": Controller(".src", identifier, refuse_other_makers, _write_krl)}
+"""Every dialect that can be written, by the name that the command line takes."""
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A program, ready to be written to a file.
+
+    Attributes:
+        text: of the file, lines ended by a newline.
+        findings: warnings and infos of the preflight.
+        name: of the program in the text; its file must be called `name` + `suffix`.
+        suffix: with its dot.
+    """
+
+    text: str
+    findings: tuple[Finding, ...]
+    name: str
+    suffix: str
+
+
+def export(
+    plan: Plan,
+    controller: str = "krl",
+    *,
+    skip_failed: bool = False,
+    name: str | None = None,
+    version: str | None = None,
+) -> Exported:
+    """Write a verified plan as a robot program.
+
+    Args:
+        plan: what to run.
+        controller: one of `CONTROLLERS`.
+        skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
+        name: of the program; by default the plan's.
+        version: of zerorev, for the comment block; by default the installed one.
+
+    Raises:
+        InputError: unknown controller.
+        NotExportableError: the robot is another maker's, a hole has no verified motion, or the preflight found an
+            error.
+    """
+    if controller not in CONTROLLERS:
+        raise InputError(f"unknown controller '{controller}'", where="controller", accepted=", ".join(CONTROLLERS))
+    dialect = CONTROLLERS[controller]
+    dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
+    program = build_program(plan, skip_failed=skip_failed)
+    findings = preflight(program, plan)
+    if errors := [finding for finding in findings if finding.level == "error"]:
+        raise NotExportableError(tuple(_sentence(finding) for finding in errors))
+    called = dialect.program_name(name or plan.name)
+    return Exported(dialect.write(program, called, findings, version), findings, called, dialect.suffix)
+
+
+def _sentence(finding: Finding) -> str:
+    return finding.message if finding.hole is None else f"hole {finding.hole}: {finding.message}"

@@ -1,0 +1,103 @@
+"""The letters and numbers of KRL: identifiers, comments, fixed decimals, and KUKA's angles A, B, C."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+import unicodedata
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+
+__all__ = ["aggregate", "axis_angles", "comment", "degrees", "fixed", "frame_angles", "identifier", "turn_about_x"]
+
+LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
+LINE = 100
+POLE = 1e-9  # below this length across Z an axis points straight up or down, as far as its angle A can be told
+
+# words of the language, and modules that every controller has: a program so called would not load, or replace them
+_WORDS = """
+AND ANIN ANOUT AXIS BAS BOOL BRAKE B_AND B_EXOR B_NOT B_OR CASE CAST_FROM CAST_TO CCLOSE CELL CHANNEL CHAR CIRC
+CIRC_REL CONFIG CONFIRM CONST CONTINUE COPEN CREAD CWRITE DECL DEF DEFAULT DEFDAT DEFFCT DIGIN DO E6AXIS E6POS ELSE
+END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSPLINE ENDSWITCH ENDWHILE ENUM EXIT EXOR EXT EXTFCT FALSE FOR FRAME GLOBAL
+GOTO HALT IF IMPORT INT INTERRUPT IR_STOPM IS LIN LIN_REL LOOP MACHINE NOT OFF ON OR P00 POS PRIO PTP PTP_REL PUBLIC
+PULSE REAL REPEAT RESUME RETURN ROBCOR SCIRC SIGNAL SLIN SPLINE SPS SPTP SREAD STRUC SWITCH SWRITE SYNC THEN TO
+TRIGGER TRUE UNTIL WAIT WHEN WHILE
+"""
+RESERVED = frozenset(_WORDS.split())
+
+
+MEANT_OTHERWISE = str.maketrans({"%": " percent", "{": "(", "}": ")"})
+
+
+def identifier(name: str) -> str:
+    """A KRL name made of any text: letters, digits and `_`, a letter first, at most 24 characters, no reserved word."""
+    kept = re.sub(r"[^A-Za-z0-9_]+", "_", _ascii(name)).strip("_")
+    if not kept or not kept[0].isalpha() or kept.upper() in RESERVED:
+        kept = f"drill_{kept}"
+    return kept[:LONGEST_NAME].rstrip("_")
+
+
+def comment(text: str, *, first: str = "", longest: int = 0) -> list[str]:
+    """Comment lines of a text, wrapped; `first` leads the first line and the others are indented by as much.
+
+    KRL source is ASCII, a comment ends with its line, and `;%{...}` hides text from the operator: what cannot stand is
+    replaced.
+    """
+    plain = clean(text)
+    if longest and len(plain) > longest:
+        plain = plain[: longest - 3] + "..."
+    return textwrap.wrap(plain, LINE, initial_indent=f"; {first}", subsequent_indent="; " + " " * len(first)) or [";"]
+
+
+def clean(text: str) -> str:
+    """A text on one line, in printable ASCII, without the characters that mean something in a KRL comment."""
+    one_line = " ".join(_ascii(text).split())
+    return re.sub(r"[^ -~]", "?", one_line).translate(MEANT_OTHERWISE)
+
+
+def _ascii(text: str) -> str:
+    """Accents taken off their letters, everything else beyond ASCII made a question mark."""
+    spread = unicodedata.normalize("NFKD", text)
+    return "".join(c for c in spread if not unicodedata.combining(c)).encode("ascii", "replace").decode("ascii")
+
+
+def fixed(value: float, decimals: int = 4) -> str:
+    """A number with fixed decimals, never a negative zero."""
+    return f"{round(float(value), decimals) + 0.0:.{decimals}f}"
+
+
+def degrees(angle: float, decimals: int = 4) -> str:
+    """An angle [rad] in degrees, wrapped to (-180, 180] after it is rounded, so that -180 is not written."""
+    rounded = round(float(np.rad2deg(angle)), decimals)
+    return fixed(rounded - 360.0 * np.ceil((rounded - 180.0) / 360.0), decimals)
+
+
+def aggregate(kind: str, names: str, values: list[str]) -> str:
+    """`{KIND: A value,B value}`, or without a kind `{A value,B value}`."""
+    fields = ",".join(f"{name} {value}" for name, value in zip(names.split(), values, strict=True))
+    return f"{{{kind}: {fields}}}" if kind else f"{{{fields}}}"
+
+
+def axis_angles(axis: Array) -> tuple[float, float]:
+    """A and B [rad] of every frame whose X points along a unit axis, shape (3,): R = Rz(A) Ry(B) Rx(C).
+
+    Straight up or down (B = -90 or +90 deg) A and C turn about the same line: A is then 0 by choice, C takes it all.
+    """
+    across = float(np.hypot(axis[0], axis[1]))
+    A = float(np.arctan2(axis[1], axis[0])) if across > POLE else 0.0
+    return A, float(np.arctan2(-axis[2], across))
+
+
+def turn_about_x(R: Array, A: float, B: float) -> float:
+    """C [rad] of a rotation, shape (3, 3), for given A and B [rad]; well conditioned for every direction of X."""
+    y = np.array([-np.sin(A), np.cos(A), 0.0])
+    z = np.array([np.cos(A) * np.sin(B), np.sin(A) * np.sin(B), np.cos(B)])
+    return float(np.arctan2(R[:, 1] @ z, R[:, 1] @ y))
+
+
+def frame_angles(R: Array) -> tuple[float, float, float]:
+    """A, B, C [rad] of a rotation, shape (3, 3)."""
+    A, B = axis_angles(R[:, 0])
+    return A, B, turn_about_x(R, A, B)

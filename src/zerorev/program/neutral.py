@@ -1,0 +1,230 @@
+"""The controller-neutral program: what every controller's file says, before any dialect.
+
+The tool frame *as written* has X along the plunge (X = -Z_tcp), Y = Y_tcp and so Z = X_tcp. The hole's axis is then the
+X direction of every pose of a hole, and the spin is a turn about X alone: of KUKA's angles (A, B, C about Z, Y', X'')
+only C varies along a hole, whatever the direction of the hole. The tool as the thesis draws it does not have this, and
+passes the singularity of those angles within the range of position 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from zerorev.errors import NotExportableError
+from zerorev.kinematics import tcp_pose
+from zerorev.model._arrays import Array, transform
+from zerorev.model.job import Settings
+from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.program.lead_in import find_lead_in
+from zerorev.program.waypoints import Waypoint, waypoints, with_blends
+
+__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program"]
+
+T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
+"""The tool frame as written, in the tcp frame."""
+
+
+@dataclass(frozen=True)
+class JointMove:
+    """A move of all axes at once, to the point where a hole's linear moves begin; the tool stops there.
+
+    Attributes:
+        joints: controller angles with turns [rad], shape (6,).
+        T_part_tool: the pose it arrives at, shape (4, 4), translation [m].
+        standoff: [m].
+        psi: spin [rad].
+    """
+
+    joints: Array
+    T_part_tool: Array
+    standoff: float
+    psi: float
+
+
+@dataclass(frozen=True)
+class LinearMove:
+    """A straight move of the tool tip, the tool turning evenly about the drill axis.
+
+    Attributes:
+        T_part_tool: where it ends, shape (4, 4), translation [m].
+        standoff: where it ends [m].
+        psi: spin where it ends [rad], with turns, so that the sense of the turn can be read.
+        feed: of the tip [m/s].
+        blend: radius at its end [m]; 0 is an exact stop.
+        leg: which part of the motion it belongs to.
+        comment: what its end is.
+    """
+
+    T_part_tool: Array
+    standoff: float
+    psi: float
+    feed: float
+    blend: float
+    leg: Literal["lead-in", "plunge", "retract"]
+    comment: str
+
+
+@dataclass(frozen=True)
+class HoleProgram:
+    """The moves of one hole.
+
+    Attributes:
+        id: of the hole.
+        axis: unit plunge direction in the part frame, shape (3,).
+        depth: stroke [m].
+        start: the move to the lead-in point.
+        moves: in order.
+        corner: index of the move that ends at the turning point of the motion.
+        reversals_per_joint: as planned, shape (6,).
+    """
+
+    id: str
+    axis: Array
+    depth: float
+    start: JointMove
+    moves: tuple[LinearMove, ...]
+    corner: int
+    reversals_per_joint: tuple[int, ...]
+
+    @property
+    def lead_in(self) -> float:
+        """Length run along the plunge leg before the stroke begins [m]."""
+        return max(self.start.standoff - self.depth, 0.0)
+
+    @property
+    def corner_move(self) -> LinearMove:
+        """The move that ends at the turning point."""
+        return self.moves[self.corner]
+
+
+@dataclass(frozen=True)
+class Program:
+    """A plan as moves, before any dialect.
+
+    Attributes:
+        name: of the plan.
+        robot: name of the robot file.
+        manufacturer: of the robot.
+        model: the maker's name of the robot.
+        joint_names: as the controller shows them.
+        tool: name of the tool.
+        T_flange_tool: the tool frame as written, shape (4, 4), translation [m].
+        T_base_part: the part frame, shape (4, 4), translation [m]; every pose is given in it.
+        settings: how the motion is run.
+        holes: in the plan's order.
+        findings: what was shortened or left out on the way here.
+    """
+
+    name: str
+    robot: str
+    manufacturer: str
+    model: str
+    joint_names: tuple[str, ...]
+    tool: str
+    T_flange_tool: Array
+    T_base_part: Array
+    settings: Settings
+    holes: tuple[HoleProgram, ...]
+    findings: tuple[Finding, ...] = ()
+
+
+def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
+    """Make the moves of a plan.
+
+    Args:
+        plan: verified, without error findings.
+        skip_failed: leave out the holes that must not be exported, and say so in a finding, instead of refusing.
+
+    Raises:
+        NotExportableError: a hole that was not verified, has an error finding or has no motion; with `skip_failed`,
+            only where no hole is left or the plan as a whole has an error finding.
+    """
+    refused = _refusals(plan)
+    kept = [hole for hole in plan.holes if hole.hole.id not in refused]
+    if None in refused or (refused and not skip_failed) or not kept:
+        raise NotExportableError(tuple(refused.values()) or ("the plan has no holes",))
+    holes, findings = [], [_skipped(hole_id, why) for hole_id, why in refused.items()]
+    for hole in kept:
+        moves, found = _hole_program(plan, hole)
+        holes.append(moves)
+        findings.extend(found)
+    return Program(
+        name=plan.name,
+        robot=plan.robot.name,
+        manufacturer=plan.robot.manufacturer,
+        model=plan.robot.model,
+        joint_names=plan.robot.joint_names,
+        tool=plan.tool.name,
+        T_flange_tool=plan.tool.T_flange_tcp @ T_TCP_TOOL,
+        T_base_part=plan.T_base_part,
+        settings=plan.settings,
+        holes=tuple(holes),
+        findings=tuple(findings),
+    )
+
+
+def _refusals(plan: Plan) -> dict[str | None, str]:
+    """Why a hole must not be exported, by its id; under None, why the whole plan must not."""
+    reasons: dict[str | None, str] = {}
+    errors = [finding for finding in plan.findings if finding.level == "error"]
+    if whole := [finding.message for finding in errors if finding.hole is None]:
+        reasons[None] = f"the plan: {'; '.join(whole)}"
+    for hole in plan.holes:
+        own = [*hole.findings, *(finding for finding in errors if finding.hole == hole.hole.id)]
+        if why := _why_not(hole, [finding.message for finding in own if finding.level == "error"]):
+            reasons[hole.hole.id] = f"hole {hole.hole.id}: {why}"
+    return reasons
+
+
+def _why_not(hole: HolePlan, errors: list[str]) -> str:
+    if errors:
+        return "; ".join(errors)
+    if hole.status == "infeasible" or hole.motion is None:
+        return "it has no motion"
+    if hole.verified is None:
+        return "it was not verified"
+    if not hole.verified.passed:
+        return "it did not pass the check: " + ("; ".join(hole.verified.failures) or "no reason given")
+    return ""
+
+
+def _skipped(hole_id: str | None, why: str) -> Finding:
+    return Finding("warning", "skipped", f"left out of the program: {why}", hole_id)
+
+
+def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Finding, ...]]:
+    assert hole.motion is not None  # _why_not has seen to it
+    lead_in = find_lead_in(plan.robot, plan.tool, hole, plan.settings.lead_in)
+    points, corner = waypoints(hole.motion.profile, lead_in.length)
+    points = with_blends(points, corner, plan.settings.blend)
+    T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)
+    poses = [_tool_pose(T_part_base, hole, point) for point in points]
+    moves = tuple(
+        LinearMove(
+            pose,
+            point.standoff,
+            point.psi,
+            plan.settings.feed_retract if point.leg == "retract" else plan.settings.feed_plunge,
+            point.blend,
+            point.leg,
+            point.comment,
+        )
+        for point, pose in zip(points[1:], poses[1:], strict=True)
+    )
+    program = HoleProgram(
+        id=hole.hole.id,
+        axis=T_part_base[:3, :3] @ hole.hole.direction,
+        depth=float(hole.motion.profile.standoff[0]),
+        start=JointMove(lead_in.joints, poses[0], points[0].standoff, points[0].psi),
+        moves=moves,
+        corner=corner - 1,
+        reversals_per_joint=hole.score.reversals_per_joint if hole.score else (0,) * 6,
+    )
+    return program, lead_in.findings
+
+
+def _tool_pose(T_part_base: Array, hole: HolePlan, point: Waypoint) -> Array:
+    return np.asarray(T_part_base @ tcp_pose(hole.hole, point.standoff, point.psi) @ T_TCP_TOOL)

@@ -1,0 +1,126 @@
+"""What is looked at before a program is written: speeds, turns, poses, and what the program tells about itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.kinematics import forward, tcp_pose
+from zerorev.model._arrays import Array
+from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.motion import outward_rates
+from zerorev.program.neutral import HoleProgram, LinearMove, Program
+from zerorev.program.notes import notes, segments, tool_turn, turn_speed
+from zerorev.program.waypoints import GREATEST_TURN
+
+__all__ = ["preflight"]
+
+SAMPLES = 401  # per move
+USUAL_TURN_SPEED = float(np.deg2rad(200.0))  # [rad/s] what KUKA's $VEL.ORI1 and $VEL.ORI2 usually are
+ON_POSE = (1e-5, float(np.deg2rad(0.01)))  # [m], [rad] between a plan's joints and its poses
+ROUND_OFF = 1e-9
+
+
+def preflight(program: Program, plan: Plan) -> tuple[Finding, ...]:
+    """Look at a program before it is written; an error among the findings stops the export.
+
+    Args:
+        program: made from `plan`.
+        plan: whose robot, tool and branches the joints are taken from.
+    """
+    plans = {hole.hole.id: hole for hole in plan.holes}
+    found = [
+        finding
+        for hole in program.holes
+        for finding in (
+            *_joints(plan, plans[hole.id], program, hole),
+            *_speeds(plan, plans[hole.id], hole),
+            *_turns(hole),
+        )
+    ]
+    return (*found, *notes(program))
+
+
+def _joints(plan: Plan, hole_plan: HolePlan, program: Program, hole: HoleProgram) -> tuple[Finding, ...]:
+    """A plan's joints must be at its poses, and the program's first joints at its first pose and within the limits.
+
+    The axis values go into the program as they stand in the plan: a plan file that was edited by hand, or a robot file
+    that is no longer the one it was planned with, must not move the robot.
+    """
+    motion = hole_plan.motion
+    assert motion is not None
+    planned = tcp_pose(hole_plan.hole, motion.profile.standoff, motion.profile.psi)
+    T_tcp_tool = np.linalg.inv(plan.tool.T_flange_tcp) @ program.T_flange_tool
+    poses = [*(T @ T_tcp_tool for T in planned), program.T_base_part @ hole.start.T_part_tool]
+    joints = np.vstack([motion.joints, hole.start.joints])
+    reached = forward(plan.robot, joints) @ program.T_flange_tool
+    off = max(float(np.linalg.norm(a[:3, 3] - b[:3, 3])) for a, b in zip(poses, reached, strict=True))
+    turned = max(tool_turn(a, b) for a, b in zip(poses, reached, strict=True))
+    found = []
+    if not (off <= ON_POSE[0] and turned <= ON_POSE[1]):
+        message = f"the plan's joints miss its poses by {off * 1e3:.3g} mm and {np.rad2deg(turned):.3g} deg"
+        found.append(Finding("error", "joints", message, hole.id))
+    limits = plan.robot.limits
+    beyond = (joints < limits.lower - ROUND_OFF) | (joints > limits.upper + ROUND_OFF)
+    if names := [name for i, name in enumerate(plan.robot.joint_names) if beyond[:, i].any()]:
+        found.append(Finding("error", "limit", f"{' '.join(names)} beyond the joint limits", hole.id))
+    return tuple(found)
+
+
+def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding, ...]:
+    """Joint speeds at the job's feeds: one error a leg, at the joint that is farthest beyond its speed."""
+    allowed = plan.robot.limits.speed
+    worst: dict[str, tuple[float, int, float, float]] = {}  # leg -> share of the speed, joint, rate, feed
+    for standoff, psi, move in segments(hole):
+        rates = _rates(plan, hole_plan, standoff, psi, move)
+        if np.isnan(rates).any():
+            message = f"a singularity on the {move.leg}: no joint speed can be told"
+            return (Finding("error", "joint_speed", message, hole.id),)
+        peak = np.abs(rates).max(axis=0)
+        share = peak * move.feed / allowed
+        joint = int(np.argmax(share))
+        if share[joint] > max(1.0 + ROUND_OFF, worst.get(move.leg, (0.0,))[0]):
+            worst[move.leg] = (float(share[joint]), joint, float(peak[joint]), move.feed)
+    return tuple(
+        Finding(
+            "error",
+            "joint_speed",
+            f"{plan.robot.joint_names[joint]} would have to turn at {np.rad2deg(rate * feed):.1f} deg/s on the {leg} "
+            f"at a feed of {feed * 1e3:g} mm/s, and can turn at {np.rad2deg(allowed[joint]):.1f} deg/s; the greatest "
+            f"feed that fits is {_floored(allowed[joint] / rate * 1e3)} mm/s",
+            hole.id,
+        )
+        for leg, (_, joint, rate, feed) in worst.items()
+    )
+
+
+def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: LinearMove) -> Array:
+    """Rates d theta / d path along one move [rad/m], shape (N, 6); the sign is that of moving out."""
+    assert hole_plan.motion is not None
+    s = np.linspace(standoff, move.standoff, SAMPLES)
+    spin = np.linspace(psi, move.psi, SAMPLES)
+    slope = (move.psi - psi) / (move.standoff - standoff)
+    return outward_rates(plan.robot, plan.tool, hole_plan.hole, hole_plan.motion.branch, s, spin, slope)
+
+
+def _floored(feed_mm_s: float) -> str:
+    """A feed with three digits, rounded down, so that it does fit."""
+    digits = 2 - int(np.floor(np.log10(feed_mm_s)))
+    return f"{np.floor(feed_mm_s * 10.0**digits) / 10.0**digits:.{max(digits, 0)}f}"
+
+
+def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
+    """No move may turn the tool further than the short way round is certain, and each turns as its spin says."""
+    found = []
+    pose = hole.start.T_part_tool
+    for number, (_, psi, move) in enumerate(segments(hole), start=1):
+        turn, by_pose = abs(move.psi - psi), tool_turn(pose, move.T_part_tool)
+        if turn > GREATEST_TURN + ROUND_OFF or abs(turn - by_pose) > 1e-6:
+            message = f"linear move {number} turns the tool by {np.rad2deg(turn):.2f} deg, its poses differ by "
+            message += f"{np.rad2deg(by_pose):.2f} deg; at most {np.rad2deg(GREATEST_TURN):g} deg are allowed"
+            found.append(Finding("error", "tool_turn", message, hole.id))
+        pose = move.T_part_tool
+    if turn_speed(hole) > USUAL_TURN_SPEED:
+        message = f"the tool turns at {np.rad2deg(turn_speed(hole)):.0f} deg/s: see that the controller's limit of the "
+        message += "orientation speed allows it, or it will throttle the feed"
+        found.append(Finding("warning", "turn_speed", message, hole.id))
+    return tuple(found)

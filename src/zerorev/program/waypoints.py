@@ -1,0 +1,102 @@
+"""From a profile to the points of a program: lead-in, breakpoints, splits, and the blend at each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from zerorev.model.profile import Profile
+
+__all__ = ["GREATEST_TURN", "PASSING_BLEND", "Waypoint", "waypoints", "with_blends"]
+
+GREATEST_TURN = float(np.deg2rad(120.0))
+"""Greatest turn of the tool in one move [rad]: at 180 deg the short way round is ambiguous (theory §5)."""
+
+PASSING_BLEND = 1e-3
+"""Blend [m] at inner points other than the corner where the job asks for an exact stop at the corner: a stop within a
+leg would put every joint at rest with the drill in the material."""
+
+
+@dataclass(frozen=True)
+class Waypoint:
+    """A point of the twist plane that a program names.
+
+    Attributes:
+        standoff: [m].
+        psi: spin [rad].
+        leg: part of the motion that ends here; of the first point, the part that begins.
+        comment: what the point is.
+        blend: radius [m]; 0 is an exact stop.
+    """
+
+    standoff: float
+    psi: float
+    leg: Literal["lead-in", "plunge", "retract"]
+    comment: str
+    blend: float = 0.0
+
+
+def waypoints(profile: Profile, lead_in: float) -> tuple[tuple[Waypoint, ...], int]:
+    """The points of a motion, the lead-in [m] before it, and the index of the corner among them.
+
+    Each segment is split into equal moves that turn the tool by `GREATEST_TURN` at most.
+    """
+    start = Waypoint(float(profile.standoff[0]), float(profile.psi[0]), "lead-in", "start of the stroke")
+    points = [start]
+    if lead_in > 0:
+        ahead = Waypoint(
+            start.standoff + lead_in, start.psi + float(profile.twist_rate[0]) * lead_in, "lead-in", "lead-in point"
+        )
+        points = [ahead, *_split(ahead, start)]
+    corner = 0
+    for k in range(1, len(profile.standoff)):
+        leg: Literal["plunge", "retract"] = "plunge" if k <= profile.corner else "retract"
+        last = k == len(profile.standoff) - 1
+        comment = _corner(profile) if k == profile.corner else "end of the stroke" if last else "breakpoint"
+        end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, comment)
+        points.extend(_split(points[-1], end))
+        if k == profile.corner:
+            corner = len(points) - 1
+    return tuple(points), corner
+
+
+def _corner(profile: Profile) -> str:
+    below = -float(profile.standoff[profile.corner])
+    return "target" if below == 0 else f"corner, {below * 1e3:.4g} mm below the target"
+
+
+def _split(start: Waypoint, end: Waypoint) -> list[Waypoint]:
+    """The points after `start` up to `end`, evenly spread, no two of them more than the greatest turn apart."""
+    # the margin keeps a turn of just 120 deg in one move in spite of the last bits of it
+    pieces = max(1, int(np.ceil(abs(end.psi - start.psi) / GREATEST_TURN - 1e-9)))
+    between = [
+        replace(
+            end,
+            standoff=start.standoff + k / pieces * (end.standoff - start.standoff),
+            psi=start.psi + k / pieces * (end.psi - start.psi),
+            comment=f"split {k} of {pieces - 1}",
+        )
+        for k in range(1, pieces)
+    ]
+    return [*between, end]
+
+
+def with_blends(points: tuple[Waypoint, ...], corner: int, blend: float) -> tuple[Waypoint, ...]:
+    """The points with a blend at every inner one, clipped to half the shorter neighbouring move.
+
+    A controller clips a greater radius in just this way, without telling; written here, the depth lost is known.
+
+    Args:
+        points: in order of motion; the first and the last stay exact stops.
+        corner: index of the corner.
+        blend: radius that the job asks for at the corner [m]; 0 stops exactly there.
+    """
+    lengths = np.abs(np.diff([point.standoff for point in points]))
+    radii = [
+        min(blend if i == corner else blend or PASSING_BLEND, lengths[i - 1] / 2, lengths[i] / 2)
+        for i in range(1, len(points) - 1)
+    ]
+    inner = [replace(point, blend=float(radius)) for point, radius in zip(points[1:-1], radii, strict=True)]
+    return (points[0], *inner, points[-1])

@@ -1,0 +1,152 @@
+"""The six joint angles along the motion, planned and with constant spin (the thesis' fig. 32)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from zerorev.evaluation import evaluate
+from zerorev.model._arrays import Array
+from zerorev.model.plan import Event, HolePlan, Motion, Plan
+from zerorev.model.profile import Profile
+from zerorev.motion import joints_along, sample_distances
+from zerorev.report.figures import style
+
+__all__ = ["joint_angles"]
+
+SAMPLES = 600
+LEAST_SPAN = 1.0  # [deg] a joint that hardly moves is drawn as one that hardly moves
+REVERSAL = {"marker": "X", "markersize": 8.0, "markeredgecolor": "white", "markeredgewidth": 0.9, "linestyle": "none"}
+
+
+class Curve(NamedTuple):
+    """Joint angles [deg], shape (N, 6), over path distance [mm], shape (N,), and where they turn back, where known."""
+
+    distance: Array
+    joints: Array
+    events: tuple[Event, ...] | None
+
+    def reversals(self, joint: int) -> list[Event]:
+        """Of one joint (1..6)."""
+        return [event for event in self.events or () if event.joint == joint]
+
+    def counted(self, joint: int) -> str:
+        """How many, as the heading says it."""
+        return "?" if self.events is None else str(len(self.reversals(joint)))
+
+
+def joint_angles(plan: Plan, hole: HolePlan) -> Figure:
+    """Six small pictures, one a joint: its angle [deg] against path distance [mm], planned and with constant spin.
+
+    Args:
+        plan: whose robot and tool move.
+        hole: with a motion.
+
+    Raises:
+        InputError: the hole has no motion.
+    """
+    motion = style.motion_of(hole)
+    figure = style.new_figure("Joint angles along the drilling motion", plan, hole, height=5.6)
+    grid = figure.subplots(2, 3, sharex=True)
+    events = hole.score.events if hole.score else None
+    planned = Curve(*_angles(plan, hole, motion, motion.profile), events)
+    constant = Profile(motion.profile.standoff, np.full_like(motion.profile.psi, motion.profile.psi[0]))
+    found = evaluate(plan.robot, plan.tool, hole.hole, constant, motion.branch, plan.settings)
+    baseline = Curve(*_angles(plan, hole, motion, constant), found.score.events if found.score else None)
+    for i, axes in enumerate(grid.flat):
+        _one_joint(axes, plan, motion.profile, i, planned, baseline)
+        if i >= 3:
+            style.label(axes, x="path distance [mm]")
+        if i % 3 == 0:
+            axes.set_ylabel("joint angle [deg]", size=9.5, color=style.INK)
+    spin = style.signed(np.rad2deg(motion.profile.psi[0]), 1)
+    doubt = "" if found.score else ", cannot be run"
+    style.legend_below(
+        figure,
+        [
+            Line2D([], [], color=style.INK, linewidth=2.2, label="planned"),
+            Line2D([], [], color=style.BASELINE_COLOUR, linewidth=1.5, linestyle=(0, (4, 2)),
+                   label=f"baseline: constant spin {spin} deg{doubt}"),
+            Line2D([], [], color=style.INK, label="reversal of the joint", **REVERSAL),  # type: ignore[arg-type]
+            Line2D([], [], color=style.MUTED, linewidth=0.9, linestyle=":", label="target"),
+        ],
+        columns=4,
+    )  # fmt: skip
+    return figure
+
+
+def _angles(plan: Plan, hole: HolePlan, motion: Motion, profile: Profile) -> tuple[Array, Array]:
+    """Path distance [mm] and controller angles [deg] with the turns of the motion, from whose start they begin."""
+    distance = sample_distances(profile, SAMPLES)
+    standoff, psi = profile.at(distance)
+    joints = joints_along(plan.robot, plan.tool, hole.hole, motion.branch, standoff, psi)
+    turns = np.round((motion.joints[0] - joints[0]) / (2 * np.pi)) * 2 * np.pi
+    return distance * 1e3, np.rad2deg(joints + turns)
+
+
+def _path_distance(profile: Profile, event: Event) -> float:
+    """Where on the path an event lies [mm]."""
+    corner = profile.standoff[profile.corner]
+    to_corner = float(profile.standoff[0] - corner)
+    if event.leg == "target":
+        return to_corner * 1e3
+    away = event.standoff - float(corner)
+    return 1e3 * (to_corner - away if event.leg == "plunge" else to_corner + away)
+
+
+def _one_joint(axes: Axes, plan: Plan, profile: Profile, i: int, planned: Curve, baseline: Curve) -> None:
+    style.bare_axes(axes)
+    colour, name = style.JOINT_COLOURS[i], plan.robot.joint_names[i]
+    axes.axvline(profile.distance[profile.corner] * 1e3, color=style.MUTED, linewidth=0.9, linestyle=":", zorder=1)
+    axes.plot(baseline.distance, baseline.joints[:, i], color=style.BASELINE_COLOUR, linewidth=1.5,
+              linestyle=(0, (4, 2)), zorder=2, label=f"{name} baseline")  # fmt: skip
+    axes.plot(planned.distance, planned.joints[:, i], color=colour, linewidth=2.2, zorder=3, label=f"{name} planned")
+    for curve, ink in ((baseline, style.BASELINE_COLOUR), (planned, colour)):
+        at = [_path_distance(profile, event) for event in curve.reversals(i + 1)]
+        if at:
+            axes.plot(at, np.interp(at, curve.distance, curve.joints[:, i]), color=ink, zorder=4,
+                      label=f"{name} reversals", **REVERSAL)  # type: ignore[arg-type] # fmt: skip
+    _frame(axes, np.concatenate([planned.joints[:, i], baseline.joints[:, i]]),
+           np.rad2deg([plan.robot.limits.lower[i], plan.robot.limits.upper[i]]))  # fmt: skip
+    axes.set_xlim(0, planned.distance[-1])
+    _end_labels(axes, (planned.joints[-1, i], baseline.joints[-1, i]), style.JOINT_INKS[i])
+    axes.set_title(name, loc="left", size=11, weight="bold", color=style.JOINT_INKS[i], pad=4, parse_math=False)
+    axes.set_title(
+        f"reversals {baseline.counted(i + 1)} → {planned.counted(i + 1)}",
+        loc="right",
+        size=8.5,
+        color=style.MUTED,
+        pad=4,
+    )
+
+
+def _frame(axes: Axes, values: Array, limits: Array) -> None:
+    """The range of the angle axis; a joint limit is shown where the motion comes near it."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    span = max(high - low, LEAST_SPAN)
+    middle = (low + high) / 2
+    low, high = min(low, middle - span / 2), max(high, middle + span / 2)
+    for limit, distance, align in ((limits[0], low - limits[0], "bottom"), (limits[1], limits[1] - high, "top")):
+        if distance > max(0.5 * span, 3.0):
+            continue
+        low, high = min(low, limit), max(high, limit)
+        axes.axhline(limit, color="black", linewidth=1.6, zorder=1)
+        axes.annotate(f"limit {style.signed(limit, 0)}", (0.02, limit), xycoords=("axes fraction", "data"), size=8,
+                      xytext=(0, 2 if align == "bottom" else -2), textcoords="offset points", va=align,
+                      color="black")  # fmt: skip
+    pad = 0.1 * (high - low)
+    axes.set_ylim(low - pad, high + pad)
+
+
+def _end_labels(axes: Axes, ends: tuple[float, float], ink: str) -> None:
+    """Name the two curves where they end, beside the picture."""
+    low, high = axes.get_ylim()
+    places = style.spread_out([end if np.isfinite(end) else low for end in ends], 0.085 * (high - low))
+    for end, place, text, colour in zip(ends, places, ("planned", "baseline"), (ink, style.MUTED), strict=True):
+        if np.isfinite(end):
+            axes.annotate(text, (1.02, place), xycoords=("axes fraction", "data"), size=8, va="center", color=colour,
+                          annotation_clip=False)  # fmt: skip

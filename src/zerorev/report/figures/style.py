@@ -1,0 +1,181 @@
+"""How every figure looks: colours, sizes, heading, legend; and the few helpers that all of them share.
+
+Only matplotlib's object interface is used, and every size is given to the artist itself, so that drawing neither reads
+nor leaves behind any global state.
+"""
+
+from __future__ import annotations
+
+import io
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array
+from zerorev.model.plan import HolePlan, Motion, Plan
+
+__all__ = [
+    "BASELINE_COLOUR",
+    "CASING",
+    "DASHES",
+    "INK",
+    "JOINT_COLOURS",
+    "JOINT_INKS",
+    "MUTED",
+    "bare_axes",
+    "deg_per_mm",
+    "label",
+    "legend_below",
+    "motion_of",
+    "new_figure",
+    "no_effect",
+    "png",
+    "signed",
+    "spread_out",
+]
+
+# Okabe and Ito's colours, which stay apart for colour-blind eyes; one a joint, the same in every figure
+JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9")
+# the same, dark enough for letters on white
+JOINT_INKS = ("#005a8f", "#8a5f00", "#00694c", "#a84a00", "#99487a", "#1c6d9e")
+# told apart without colour, too
+DASHES: tuple[Any, ...] = (
+    "-",
+    (0, (6, 1.5)),
+    (0, (3, 1)),
+    (0, (6, 1.2, 1.2, 1.2)),
+    (0, (1.2, 0.9)),
+    (0, (9, 1.5, 3, 1.5)),
+)
+INK, MUTED, BASELINE_COLOUR = "#1a1a1a", "#5c5c5c", "#7f7f7f"
+CASING: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white")]
+
+WIDTH, DPI = 8.0, 150  # inches and dots per inch: 1200 px
+HEADER = 0.62  # inches
+TITLE_LENGTH = 48  # characters of a hole's id in a heading
+
+
+def motion_of(hole: HolePlan) -> Motion:
+    """The motion of a hole that has one.
+
+    Raises:
+        InputError: the hole is infeasible, so that there is nothing to draw.
+    """
+    if hole.motion is None:
+        raise InputError("has no motion to draw", where=f"hole {hole.hole.id}", accepted="a planned or evaluated hole")
+    return hole.motion
+
+
+def new_figure(title: str, plan: Plan, hole: HolePlan, height: float) -> Figure:
+    """An empty figure with its heading: what it shows, then robot, hole, branch and reversals.
+
+    Args:
+        title: what the figure shows.
+        plan: whose robot is named.
+        hole: which is named.
+        height: of the figure [inches].
+    """
+    figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor="white")
+    FigureCanvasAgg(figure)
+    below_heading = (0.005, 0.01, 0.99, 1 - HEADER / height - 0.01)
+    figure.set_layout_engine("constrained", rect=below_heading, h_pad=0.05, w_pad=0.05)
+    top, left = 1 - 0.1 / height, 0.13 / WIDTH
+    figure.text(left, top, title, ha="left", va="top", size=12.5, weight="bold", color=INK)
+    figure.text(left, top - 0.26 / height, _subtitle(plan, hole), ha="left", va="top", size=9.5, color=MUTED,
+                parse_math=False)  # fmt: skip
+    return figure
+
+
+def _subtitle(plan: Plan, hole: HolePlan) -> str:
+    robot = f"{plan.robot.manufacturer} {plan.robot.model}".strip() or plan.robot.name
+    name = hole.hole.id if len(hole.hole.id) <= TITLE_LENGTH else f"{hole.hole.id[: TITLE_LENGTH - 1]}…"
+    reversals = "?" if hole.score is None else str(hole.score.reversals)
+    if hole.baseline is not None:
+        reversals = f"{hole.baseline.reversals} at constant spin, {reversals} here"
+    return f"{robot}   |   hole {name}   |   branch {motion_of(hole).branch}   |   reversals: {reversals}"
+
+
+def bare_axes(axes: Axes) -> None:
+    """Thin left and bottom axes, small ticks, a faint grid behind everything."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(MUTED)
+    axes.tick_params(labelsize=8.5, color=MUTED, labelcolor=INK, width=0.8)
+    axes.grid(color="#e4e4e4", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def label(axes: Axes, x: str = "", y: str = "") -> None:
+    """Axis labels, with their units."""
+    axes.set_xlabel(x, size=9.5, color=INK)
+    axes.set_ylabel(y, size=9.5, color=INK)
+
+
+def legend_below(figure: Figure, handles: Sequence[Any], columns: int) -> None:
+    """One legend for the whole figure, under it."""
+    legend = figure.legend(
+        handles=list(handles), loc="outside lower center", ncols=columns, fontsize=8.5, frameon=False,
+        handlelength=2.4, columnspacing=1.5, labelcolor=INK,
+    )  # fmt: skip
+    for text in legend.get_texts():
+        text.set_parse_math(False)
+
+
+def spread_out(places: Sequence[float], gap: float, low: float = -np.inf, high: float = np.inf) -> Array:
+    """Places of labels, in the order given, moved as little apart as keeps them `gap` from each other.
+
+    Args:
+        places: where they belong.
+        gap: least distance between two.
+        low: no label below this.
+        high: no label above this.
+    """
+    order = np.argsort(places, kind="stable")
+    # neighbours that are too close become one block, centred on what its members wanted
+    blocks: list[tuple[float, int]] = []  # centre, members
+    for place in np.asarray(places, dtype=float)[order]:
+        blocks.append((float(place), 1))
+        while len(blocks) > 1:
+            (below, m), (above, n) = blocks[-2:]
+            if above - below >= gap * (m + n) / 2:
+                break
+            blocks[-2:] = [((below * m + above * n) / (m + n), m + n)]
+    ranks = np.arange(len(order))
+    spread = np.array([centre + gap * (k - (n - 1) / 2) for centre, n in blocks for k in range(n)])
+    out = np.empty(len(order))
+    out[order] = np.minimum(np.maximum(spread, low + gap * ranks), high - gap * ranks[::-1])
+    return out
+
+
+def no_effect(plan: Plan, joints: Sequence[int]) -> list[Any]:
+    """What the legend says of joints (0..5) that spin does not move; nothing where there are none."""
+    names = ", ".join(plan.robot.joint_names[i] for i in joints)
+    return [Line2D([], [], linestyle="none", label=f"spin never moves {names}")] if joints else []
+
+
+def deg_per_mm(rate: Array) -> Array:
+    """[rad/m] -> [deg/mm]."""
+    return np.asarray(np.rad2deg(rate) * 1e-3)
+
+
+def signed(value: float, digits: int) -> str:
+    """A number with its sign, a real minus, and never -0."""
+    rounded = round(float(value), digits) + 0.0
+    return f"{rounded:+.{digits}f}".replace("-", "−") if rounded else f"{0:.{digits}f}"
+
+
+def png(figure: Figure) -> bytes:
+    """The figure as the bytes of a PNG file."""
+    buffer = io.BytesIO()
+    with warnings.catch_warnings():
+        # a hole may be called in letters that the font lacks; its picture is none the worse
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        figure.savefig(buffer, format="png", metadata={"Software": "zerorev"})
+    return buffer.getvalue()

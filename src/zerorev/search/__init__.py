@@ -1,0 +1,1 @@
+"""One file a method of finding the best motion of a hole."""

@@ -1,0 +1,121 @@
+"""The check itself: follow the motion from its first joint vector, and hold every claim of the plan against it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.job import Settings
+from zerorev.model.plan import HolePlan, Plan, Verification
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.verify.arm import posture_of
+from zerorev.verify.claims import (
+    as_asked,
+    blend_keeps,
+    complete,
+    joints_stated,
+    reversals_claimed,
+    score_claimed,
+)
+from zerorev.verify.measure import reversals
+from zerorev.verify.path import Track, blend, follow, legs, residual, with_blend
+from zerorev.verify.sound import continuity, limit_distances, limits, on_the_axis, reach
+
+__all__ = ["verify_hole", "verify_plan"]
+
+
+def verify_plan(plan: Plan) -> Plan:
+    """The plan with `verified` filled in for each hole that has a motion.
+
+    Args:
+        plan: any plan, also a wrong one.
+    """
+    holes = tuple(
+        hole if hole.motion is None else replace(hole, verified=verify_hole(plan.robot, plan.tool, plan.settings, hole))
+        for hole in plan.holes
+    )
+    return replace(plan, holes=holes)
+
+
+def verify_hole(
+    robot: Robot,
+    tool: Tool,
+    settings: Settings,
+    hole_plan: HolePlan,
+    *,
+    samples: int = 40_000,
+    blend_samples: int = 4_000,
+) -> Verification:
+    """Prove or refute what a plan claims of one hole, from the model alone.
+
+    The joints of the whole motion are computed anew, from the hole, the profile and the joints at its first
+    breakpoint, and every claim is held against them. A wrong plan is reported, never raised.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        settings: blend, corner and bounds as planned.
+        hole_plan: what is claimed.
+        samples: points on the two legs.
+        blend_samples: points on the blended corner.
+
+    Returns:
+        What was looked at, and one sentence for each claim that does not hold.
+    """
+    flaws = tuple(complete(hole_plan))
+    motion, score = hole_plan.motion, hole_plan.score
+    if flaws or motion is None or score is None:
+        return Verification(False, 0, 0, (0,) * 6, np.nan, np.nan, np.nan, np.nan, flaws)
+
+    hole, start = hole_plan.hole, motion.joints[0]
+    posture = posture_of(robot.arm, motion.joints[:1])
+    asked = legs(motion.profile, samples)
+    track = Track(asked, follow(robot, tool, hole, asked, posture, start))
+    turned = reversals(track)
+    failures = [
+        *as_asked(robot, tool, settings, hole_plan, motion),
+        *joints_stated(robot, motion, track),
+        *reversals_claimed(robot, score, track, turned),
+        *score_claimed(robot, score, track, turned),
+    ]
+    looked_at = [("", track)]
+    if settings.blend > 0:
+        curve = blend(motion.profile, settings.blend, blend_samples)
+        entry = track.joints[np.flatnonzero(asked.standoff[: asked.corner] > curve.standoff[0])[-1]]
+        cut, first, last = with_blend(track, Track(curve, follow(robot, tool, hole, curve, posture, entry)))
+        failures += blend_keeps(robot, turned, cut, reversals(cut))
+        # a sample of the legs on either side, so that the joints are also seen to be continuous into the blend
+        looked_at.append(("in the blended corner, ", cut.part(first - 1, last + 1)))
+
+    figures = []
+    for where, piece in looked_at:
+        position, rotation = residual(robot, tool, hole, piece.path, piece.joints)
+        checks = (
+            *reach(piece),
+            *on_the_axis(piece, position, rotation),
+            *continuity(robot, piece),
+            *limits(robot, piece),
+        )
+        failures += [where + failure for failure in checks]
+        steps, room = np.abs(np.diff(piece.joints, axis=0)), limit_distances(robot, piece.joints)
+        figures.append([_most(position), _most(rotation), _most(steps), -_most(-room)])
+    position_error, rotation_error, step, short_room = zip(*figures, strict=True)
+    return Verification(
+        passed=not failures,
+        samples=asked.standoff.size,
+        blend_samples=blend_samples if settings.blend > 0 else 0,
+        reversals_per_joint=tuple(map(len, turned)),
+        max_position_error=max(position_error),
+        max_rotation_error=max(rotation_error),
+        max_joint_step=max(step),
+        min_limit_distance=min(short_room),
+        failures=tuple(failures),
+    )
+
+
+def _most(values: Array) -> float:
+    """The greatest value that is not NaN; NaN where there is none."""
+    return float(np.fmax.reduce(values, axis=None))

@@ -1,0 +1,169 @@
+"""Is what a plan says of its motion true: branch, joints at the breakpoints, reversals, and the score's figures."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from zerorev.model.job import Settings
+from zerorev.model.plan import HolePlan, Motion, Score
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.verify.arm import branch_of
+from zerorev.verify.measure import Reversals, mean_rates, rates, travel
+from zerorev.verify.path import Track
+from zerorev.verify.sound import limit_distances
+
+__all__ = ["as_asked", "blend_keeps", "complete", "joints_stated", "reversals_claimed", "score_claimed"]
+
+PLACE_TOLERANCE = 1e-9  # [m]
+JOINT_TOLERANCE = 1e-6  # [rad]; a plan file may have rounded its angles a little
+TRAVEL_TOLERANCE = 1e-6  # relative
+RATE_TOLERANCE = 0.02  # relative
+RATE_FLOOR = 2e-4  # [rad/m], about 1e-5 deg/mm
+
+
+def complete(hole_plan: HolePlan) -> Iterator[str]:
+    """A motion and a score must be there, of the right shapes, and finite."""
+    motion, score = hole_plan.motion, hole_plan.score
+    if motion is None:
+        yield "there is no motion to check"
+        return
+    shape = (motion.profile.standoff.size, 6)
+    if np.shape(motion.joints) != shape:
+        yield f"the joints at the breakpoints have shape {np.shape(motion.joints)}, not {shape}"
+    elif not np.isfinite(motion.joints).all():
+        yield "the joints at the breakpoints have NaN or infinite among them"
+    if score is None:
+        yield "the plan claims nothing: it has no score"
+        return
+    figures: dict[str, tuple[npt.ArrayLike, tuple[int, ...]]] = {
+        "reversals_per_joint": (score.reversals_per_joint, (6,)),
+        "travel": (score.travel, ()),
+        "min_rate": (score.min_rate, (6,)),
+        "mean_rate": (score.mean_rate, (6,)),
+        "limit_distance": (score.limit_distance, (6,)),
+    }
+    for name, (value, expected) in figures.items():
+        if np.shape(value) != expected:
+            yield f"the score's {name} has shape {np.shape(value)}, not {expected}"
+        elif not np.isfinite(value).all():
+            yield f"the score's {name} is NaN or infinite"
+
+
+def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, motion: Motion) -> Iterator[str]:
+    """The motion must drill the hole that was asked for, on the branch that is named."""
+    hole, standoff = hole_plan.hole, motion.profile.standoff
+    for end, where in ((standoff[0], "starts"), (standoff[-1], "ends")):
+        if abs(end - hole.depth) > PLACE_TOLERANCE:
+            yield f"the motion {where} at {_mm(end)} of stand-off, not at the depth of {_mm(hole.depth)}"
+    corner = standoff.min()
+    if corner > PLACE_TOLERANCE:
+        yield f"the corner lies {_mm(corner)} short of the target"
+    if corner < settings.corner - PLACE_TOLERANCE:
+        yield f"the corner lies {_mm(-corner)} behind the target, {_mm(-settings.corner)} are allowed"
+    branch = branch_of(robot.arm, motion.joints[0])
+    if branch != motion.branch:
+        yield f"the joints at the start are of branch {branch}, the plan says {motion.branch}"
+    if hole.branch is not None and hole.branch != motion.branch:
+        yield f"branch {hole.branch} is asked for, the plan says {motion.branch}"
+    bound = settings.psi_bound
+    if hole_plan.status == "planned" and bound is not None:
+        psi = float(np.abs(motion.profile.psi).max())
+        if psi > bound + JOINT_TOLERANCE:
+            yield f"a spin of {_deg(psi)} passes the bound of {_deg(bound)}"
+    # the wrist centre is fixed in the tool: its distance from Z_tcp needs no arm
+    T = tool.T_flange_tcp
+    wrist = T[:3, :3].T @ (np.array([0.0, 0.0, -robot.arm.c4]) - T[:3, 3])
+    offset = float(np.hypot(wrist[0], wrist[1]))
+    if not abs(offset - hole_plan.wrist_offset) <= 1e-6:
+        yield f"the wrist centre is {_mm(offset)} off the drill axis, the plan says {_mm(hole_plan.wrist_offset)}"
+
+
+def joints_stated(robot: Robot, motion: Motion, track: Track) -> Iterator[str]:
+    """The joints at every breakpoint must lie on the path that is followed from the first one."""
+    off = np.abs(track.joints[list(track.path.knots)] - motion.joints)
+    for joint, name in enumerate(robot.joint_names):
+        k = int(np.argmax(np.nan_to_num(off[:, joint])))
+        if off[k, joint] > JOINT_TOLERANCE:
+            yield (
+                f"{name} at breakpoint {k + 1} is given as {_deg(motion.joints[k, joint])}, "
+                f"{np.rad2deg(off[k, joint]):.4g} deg off the path {track.path.place(track.path.knots[k])}"
+            )
+
+
+def reversals_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -> Iterator[str]:
+    """Each joint must reverse as often as claimed, and have as many events."""
+    events = Counter(event.joint for event in score.events)
+    for joint, (name, found) in enumerate(zip(robot.joint_names, turned, strict=True)):
+        claimed = score.reversals_per_joint[joint]
+        if len(found) != claimed:
+            places = f" ({'; '.join(track.path.place(i) for i in found[:3])})" if found else ""
+            yield f"{name} reverses {_times(len(found))}{places}, the plan claims {claimed}"
+        if events[joint + 1] != claimed:
+            yield f"{name} has {events[joint + 1]} reversals listed as events, the plan claims {claimed}"
+
+
+def blend_keeps(robot: Robot, turned: Reversals, cut: Track, turned_cut: Reversals) -> Iterator[str]:
+    """Blending the corner must not make a joint reverse more often.
+
+    Args:
+        robot: the arm.
+        turned: reversals of both legs up to the corner.
+        cut: the motion with its corner blended.
+        turned_cut: reversals of that.
+    """
+    for name, sharp, blunt in zip(robot.joint_names, turned, turned_cut, strict=True):
+        if len(blunt) > len(sharp):
+            places = "; ".join(cut.path.place(i) for i in blunt[:3])
+            yield f"with the corner blended {name} reverses {_times(len(blunt))} ({places}), {len(sharp)} without"
+
+
+def score_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -> Iterator[str]:
+    """Travel must be right; slowest motion and distance to the limits must not be overstated.
+
+    The least rate of a joint that turns round within a leg is nil, and nothing rests on what is claimed of it: the
+    motion threshold leaves it out (theory §5).
+    """
+    moved = travel(track)
+    if abs(moved - score.travel) > TRAVEL_TOLERANCE * max(moved, 1e-3):
+        yield f"the joints travel {np.rad2deg(moved):.6f} deg, the plan claims {np.rad2deg(score.travel):.6f}"
+    speed, mean = rates(track), mean_rates(track)
+    slowest = speed.min(axis=0)
+    for joint, name in enumerate(robot.joint_names):
+        claimed = score.min_rate[joint]
+        if set(turned[joint]) <= {track.path.corner} and _overstated(claimed, slowest[joint]):
+            place = track.path.place(int(speed[:, joint].argmin()))
+            yield f"{name} has a least rate of {_rate(slowest[joint])} {place}, the plan claims {_rate(claimed)}"
+        claimed = score.mean_rate[joint]
+        if _overstated(claimed, mean[joint]):
+            yield f"{name} has a mean rate of {_rate(mean[joint])} on a leg, the plan claims {_rate(claimed)}"
+    room = limit_distances(robot, track.joints)
+    for joint, name in enumerate(robot.joint_names):
+        nearest, stated = int(room[:, joint].argmin()), score.limit_distance[joint]
+        if stated > room[nearest, joint] + JOINT_TOLERANCE:
+            place = track.path.place(nearest)
+            yield f"{name} comes within {_deg(room[nearest, joint])} of a limit {place}, the plan claims {_deg(stated)}"
+
+
+def _overstated(claimed: float, measured: float) -> bool:
+    return bool(claimed > measured * (1 + RATE_TOLERANCE) + RATE_FLOOR)
+
+
+def _times(count: int) -> str:
+    return "once" if count == 1 else f"{count} times"
+
+
+def _mm(length: float) -> str:
+    return f"{length * 1e3 + 0.0:.6g} mm"
+
+
+def _deg(angle: float) -> str:
+    return f"{np.rad2deg(angle):.8g} deg"
+
+
+def _rate(rate: float) -> str:
+    return f"{np.rad2deg(rate) / 1e3:.5g} deg/mm"

@@ -1,0 +1,42 @@
+"""What many tests start from: the thesis' robot, tool and positions, and every robot that ships."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import settings
+from oracles.published import POSITIONS, Position
+
+from zerorev.model.files import read_robot, read_tool, robot_names
+
+settings.register_profile("deterministic", derandomize=True, deadline=None, database=None, print_blob=False)
+settings.load_profile("deterministic")
+
+
+@pytest.fixture(scope="session")
+def robot():
+    """KR 6 R700-2, the thesis' robot."""
+    return read_robot("kuka_kr6_r700_2")
+
+
+@pytest.fixture(scope="session")
+def tool():
+    """The thesis' drill."""
+    return read_tool("thesis_drill")
+
+
+@pytest.fixture(scope="session")
+def positions():
+    """Positions 1 to 3 of the thesis."""
+    return POSITIONS
+
+
+@pytest.fixture(params=POSITIONS, ids=lambda position: position.name)
+def position(request) -> Position:
+    """Each of the three published positions."""
+    return request.param
+
+
+@pytest.fixture(params=robot_names(), scope="session")
+def any_robot(request):
+    """Each robot that ships."""
+    return read_robot(request.param)

@@ -1,0 +1,180 @@
+"""Plans that are refused, plans of which a part is exported, and the names and comments of what is written."""
+
+import numpy as np
+import pytest
+
+from zerorev.errors import InputError, NotExportableError
+from zerorev.model.files import read_robot
+from zerorev.model.plan import Finding
+from zerorev.program.export import CONTROLLERS, export
+from zerorev.program.krl import to_krl
+from zerorev.program.neutral import build_program
+
+PARTS = {
+    "not verified": ({"verified": None}, "it was not verified"),
+    "infeasible": ({"status": "infeasible", "motion": None, "score": None}, "it has no motion"),
+    "an error finding": (
+        {"findings": (Finding("error", "limit", "A4 runs too far", "position 2"),)},
+        "A4 runs too far",
+    ),
+}
+
+
+@pytest.fixture
+def failed(published, spoil):
+    """Position 2, failed at the check."""
+    hole = published(2)
+    return spoil(hole, verified=spoil(hole.verified, passed=False, failures=("joint 3 reverses",)))
+
+
+@pytest.mark.parametrize(("changes", "why"), PARTS.values(), ids=PARTS)
+def test_refused_with_the_hole_and_the_reason(changes, why, published, plan_of, spoil):
+    plan = plan_of(published(1), spoil(published(2), **changes))
+    with pytest.raises(NotExportableError) as refused:
+        export(plan)
+    assert refused.value.reasons == (f"hole position 2: {why}",)
+
+
+def test_refused_where_the_check_failed(failed, published, plan_of):
+    with pytest.raises(NotExportableError, match="position 2: it did not pass the check: joint 3 reverses"):
+        export(plan_of(published(1), failed))
+
+
+def test_every_refused_hole_is_named(failed, published, plan_of, spoil):
+    with pytest.raises(NotExportableError) as refused:
+        export(plan_of(published(1), failed, spoil(published(3), verified=None)))
+    assert [reason.split(":")[0] for reason in refused.value.reasons] == ["hole position 2", "hole position 3"]
+
+
+def test_failed_holes_can_be_left_out(failed, published, plan_of, krl):
+    exported = export(plan_of(published(1), failed, published(3)), skip_failed=True)
+    assert len(krl.read(exported.text).holes()) == 2
+    (finding,) = [finding for finding in exported.findings if finding.kind == "skipped"]
+    assert (finding.level, finding.hole) == ("warning", "position 2")
+    assert "joint 3 reverses" in finding.message
+    assert "warning:  hole position 2: left out of the program" in exported.text
+
+
+def test_nothing_left_is_refused(failed, plan_of):
+    with pytest.raises(NotExportableError, match="position 2"):
+        export(plan_of(failed), skip_failed=True)
+
+
+def test_an_error_of_the_whole_plan_is_refused_whatever_is_skipped(published, plan_of, spoil):
+    plan = spoil(plan_of(published(1)), findings=(Finding("error", "robot", "the robot file has changed"),))
+    with pytest.raises(NotExportableError, match="the plan: the robot file has changed"):
+        export(plan, skip_failed=True)
+
+
+def test_an_error_finding_of_the_plan_about_one_hole_refuses_that_hole(published, plan_of, spoil):
+    plan = plan_of(published(1), published(3))
+    plan = spoil(plan, findings=(Finding("error", "x", "something about it", "position 3"),))
+    with pytest.raises(NotExportableError, match="hole position 3: something about it"):
+        export(plan)
+    assert ";FOLD Hole 1 of 1: position 1" in export(plan, skip_failed=True).text
+
+
+def test_warnings_do_not_stop_the_export(published, plan_of, spoil):
+    hole = spoil(published(1), findings=(Finding("warning", "threshold", "slow", "position 1"),))
+    assert export(plan_of(hole)).text
+
+
+def test_unknown_controller(published, plan_of):
+    with pytest.raises(InputError, match=r"unknown controller 'rapid' \(accepted: krl\)"):
+        export(plan_of(published(1)), "rapid")
+    assert list(CONTROLLERS) == ["krl"]
+
+
+@pytest.mark.parametrize("name", ["abb_irb4600_60_205", "yaskawa_gp8"])
+def test_krl_for_another_makers_robot(name, published, plan_of, spoil):
+    robot = read_robot(name)
+    with pytest.raises(NotExportableError, match=f"{name} is by {robot.manufacturer}.*KUKA"):
+        export(plan_of(published(1), robot=robot))
+    with pytest.raises(NotExportableError, match="KUKA"):
+        to_krl(spoil(build_program(plan_of(published(1))), manufacturer=""))
+
+
+def test_the_same_plan_gives_the_same_text(published, plan_of):
+    first, second = (export(plan_of(published(1))).text for _ in range(2))
+    assert first == second
+
+
+NAMES = {
+    "panel": "panel",
+    "Panel 7, left side": "Panel_7_left_side",
+    "7th": "drill_7th",
+    "_x": "x",
+    "": "drill",
+    "穴": "drill",
+    "Türblech": "Turblech",
+    "LIN": "drill_LIN",
+    "cell": "drill_cell",
+    "a" * 40: "a" * 24,
+    "a_name_with_23_letters__and_more": "a_name_with_23_letters",
+}
+
+
+@pytest.mark.parametrize(("name", "called"), NAMES.items())
+def test_program_names(name, called, published, plan_of, krl):
+    exported = export(plan_of(published(1), name=name))
+    assert exported.name == called
+    assert exported.suffix == ".src"
+    assert krl.read(exported.text).name == called
+
+
+def test_a_given_name(published, plan_of, krl):
+    assert krl.read(export(plan_of(published(1)), name="left wing").text).name == "left_wing"
+
+
+IDS = ["A1\nPTP {A1 0}", "Bohrung Ø4 °", "x;%{PE}%R ;ENDFOLD", "tab\there\r\n\x00", "é" * 200, "ENDFOLD\u2028END"]
+
+
+@pytest.mark.parametrize("hole_id", IDS)
+def test_no_id_gets_out_of_its_comment(hole_id, published, plan_of, krl, spoil):
+    """The reader knows every statement that may stand in a program, and takes nothing but ASCII."""
+    plain = export(plan_of(published(3)), version="1")
+    hole = published(3)
+    odd = export(plan_of(spoil(hole, hole=spoil(hole.hole, id=hole_id)), name="test"), version="1")
+    assert krl.read(odd.text).statements == krl.read(plain.text).statements
+    for line in odd.text.splitlines():
+        assert len(line) <= 120
+        assert "%{" not in line
+
+
+def test_two_ids_alike_in_ascii_are_told_apart_by_their_number(published, plan_of, krl, spoil):
+    holes = [spoil(published(3), hole=spoil(published(3).hole, id=hole_id)) for hole_id in ("穴", "孔")]
+    folds = krl.read(export(plan_of(*holes)).text).folds
+    assert [fold for fold in folds if fold.startswith("Hole")] == ["Hole 1 of 2: ?", "Hole 2 of 2: ?"]
+
+
+def test_the_head_says_what_an_operator_needs(published, plan_of, krl):
+    plan = plan_of(published(1), published(3), name="wing", spindle_rpm=3000.0, feed_plunge=4e-3)
+    head = " ".join(krl.read(export(plan, version="1.2.3").text).comments)
+    for fact in (
+        "zerorev 1.2.3",
+        "wing",
+        "KUKA KR 6 R700-2 (kuka_kr6_r700_2)",
+        "thesis_drill",
+        "plunge 4 mm/s, retract 20 mm/s",
+        "3000 rev/min",
+        "0 joint reversals in all",
+        "turns back 0.5 mm short",
+        "T1 first",
+        "not checked for collisions",
+        "$LOAD",
+        "$ROBROOT",
+        "pull the drill out",
+    ):
+        assert fact in head
+
+
+def test_by_default_the_version_is_the_installed_one(published, plan_of):
+    from importlib.metadata import version
+
+    assert f"zerorev {version('zerorev')}" in export(plan_of(published(1))).text
+
+
+def test_never_a_relative_move(published, plan_of, krl):
+    text = export(plan_of(published(1), published(2), published(3))).text
+    assert "_REL" not in text.upper()
+    assert np.all([move.kind in ("PTP", "LIN") for move in krl.read(text).moves])

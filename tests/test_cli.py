@@ -1,0 +1,341 @@
+"""The command line as a user and as a machine meet it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from zerorev import cli
+from zerorev.cli import main
+from zerorev.model.files import read_plan
+
+GIVEN = {
+    "id": "P1",
+    "target_mm": [500, 300, 800],
+    "direction": [1, 0, 0],
+    "depth_mm": 50,
+    "psi_deg": [14.1646, -5.9388, -30.4599],
+    "branch": 4,
+}
+FAR = {"id": "far [away]", "target_mm": [5000, 300, 800], "direction": [1, 0, 0], "depth_mm": 50}
+JOB = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "min_rate_deg_per_mm": 0, "holes": [GIVEN]}
+
+
+@pytest.fixture
+def write_job(tmp_path):
+    """Changes to a sound job -> the path of its file."""
+
+    def write(**changes):
+        path = tmp_path / "panel.yaml"
+        path.write_text(yaml.safe_dump(JOB | changes))
+        return path
+
+    return write
+
+
+@pytest.fixture(scope="module")
+def plan_file(tmp_path_factory):
+    """The plan of a job with one published hole and one out of reach."""
+    folder = tmp_path_factory.mktemp("plan")
+    job = folder / "panel.yaml"
+    job.write_text(yaml.safe_dump(JOB | {"holes": [GIVEN, FAR]}))
+    assert main(["plan", str(job), "-o", str(folder / "panel.json"), "--json"]) == cli.FOUND
+    return folder / "panel.json"
+
+
+def one_message(capsys, *parts):
+    """Standard error holds one message with these parts, standard output nothing."""
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: ")
+    assert err.count("error:") == 1
+    assert "Traceback" not in err
+    for part in parts:
+        assert part in err
+    return err
+
+
+class TestPlan:
+    def test_table(self, write_job, capsys):
+        assert main(["plan", str(write_job())]) == cli.FINE
+        out, err = capsys.readouterr()
+        row = next(line for line in out.splitlines() if "P1" in line)
+        for part in ("6 → 0", "107.1", " 4 ", "14.16  -5.94  -30.46", "0.0018 A6", "yes"):
+            assert part in row
+        assert "no plan written" in out
+        assert "error" not in err
+
+    def test_search(self, write_job, capsys):
+        hole = {key: GIVEN[key] for key in ("id", "target_mm", "direction", "depth_mm")}
+        assert main(["plan", str(write_job(holes=[hole])), "--json"]) == cli.FINE
+        (answer,) = json.loads(capsys.readouterr().out)["holes"]
+        assert answer["status"] == "planned"
+        assert answer["reversals"] == 0
+
+    def test_one_hole_out_of_reach_leaves_the_others(self, plan_file):
+        first, second = read_plan(plan_file).holes
+        assert first.score.reversals == 0
+        assert first.verified.passed
+        assert second.status == "infeasible"
+
+    def test_out_of_reach_is_a_finding(self, write_job, capsys):
+        assert main(["plan", str(write_job(holes=[FAR, GIVEN]))]) == cli.FOUND
+        out = capsys.readouterr().out
+        assert "infeasible" in out
+        assert any(line.startswith("error") and "hole far [away]: " in line for line in out.splitlines())
+
+    def test_json_is_the_plan_and_nothing_else(self, write_job, tmp_path, capsys):
+        target = tmp_path / "plan.json"
+        assert main(["plan", str(write_job()), "-o", str(target), "--json"]) == cli.FINE
+        out = capsys.readouterr().out
+        assert json.loads(out)["format"] == "zerorev.plan/1"
+        assert json.loads(target.read_text()) == json.loads(out)
+
+    def test_figures(self, write_job, tmp_path, capsys):
+        assert main(["plan", str(write_job()), "--figures", str(tmp_path / "pictures")]) == cli.FINE
+        names = sorted(path.name for path in (tmp_path / "pictures").iterdir())
+        assert names == ["P1_critical_rates.png", "P1_joint_angles.png", "P1_twist_plane.png"]
+        assert "pictures" in capsys.readouterr().out
+
+    @pytest.mark.parametrize(
+        ("changes", "parts"),
+        [
+            ({"robot": "kuka_kr7"}, ("kuka_kr7", "kuka_kr6_r700_2")),
+            ({"holes": [GIVEN | {"depth_mm": "deep"}]}, ("depth_mm", "deep")),
+            ({"holes": [GIVEN | {"target_mm": [float("nan"), 0, 0]}]}, ("target_mm",)),
+            ({"holes": [GIVEN | {"depth_mm": float("inf")}]}, ("depth_mm",)),
+            ({"holes": [GIVEN | {"direction": [0, 0, 0]}]}, ("direction",)),
+            ({"holes": [GIVEN | {"depth_mm": -5}]}, ("depth",)),
+            ({"holes": [GIVEN | {"direction": [0, 1, 0]}]}, ("parallel", "part_x")),
+            ({"holes": []}, ("holes",)),
+            ({"holes": [GIVEN, GIVEN]}, ("P1", "twice")),
+            ({"holes": "none.csv"}, ("none.csv",)),
+            ({"spin": 3}, ("spin",)),
+        ],
+        ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
+    )
+    def test_a_bad_job_gets_one_message(self, write_job, tmp_path, changes, parts, capsys):
+        job = write_job(**changes)
+        target = tmp_path / "plan.json"
+        assert main(["plan", str(job), "-o", str(target)]) == cli.BAD_INPUT
+        one_message(capsys, "panel.yaml" if "kuka_kr7" not in parts else "", *parts)
+        assert not target.exists()
+
+    @pytest.mark.parametrize(
+        ("rows", "parts"),
+        [
+            ("id,x_mm,y_mm,z_mm,i,j,k\nA,500,300,800,1,0,0\n", ("depth_mm",)),
+            ("id,x_mm,y_mm,z_mm,i,j,k,depth_mm\nA,500,300,high,1,0,0,50\n", ("line 2", "z_mm", "high")),
+            ("id,x_mm,y_mm,z_mm,i,j,k,depth_mm\nA,500,300,nan,1,0,0,50\n", ("line 2", "z_mm")),
+            ("id,x_mm,y_mm,z_mm,i,j,k,depth_mm\n", ("no holes",)),
+        ],
+        ids=["missing column", "text", "nan", "empty"],
+    )
+    def test_a_bad_table_gets_one_message(self, write_job, tmp_path, rows, parts, capsys):
+        (tmp_path / "holes.csv").write_text(rows)
+        assert main(["plan", str(write_job(holes="holes.csv"))]) == cli.BAD_INPUT
+        one_message(capsys, "holes.csv", *parts)
+
+    @pytest.mark.parametrize("option", ["-o", "--figures"])
+    def test_bad_outputs_are_told_before_the_work(self, option, write_job, tmp_path, capsys, no_planning):
+        assert main(["plan", str(write_job()), option, str(tmp_path / "no" / "such")]) == cli.BAD_INPUT
+        one_message(capsys, "such", "does not exist")
+
+    @pytest.mark.parametrize("option", ["-o", "--figures"])
+    def test_no_write_permission(self, option, write_job, tmp_path, capsys, no_planning, monkeypatch):
+        job = write_job()
+        monkeypatch.setattr(os, "access", lambda *_: False)  # the tests may run as root, who may write everywhere
+        assert main(["plan", str(job), option, str(tmp_path / "x")]) == cli.BAD_INPUT
+        one_message(capsys, "no write permission")
+
+    def test_never_over_the_job(self, write_job, capsys, no_planning):
+        job = write_job()
+        before = job.read_text()
+        assert main(["plan", str(job), "-o", str(job)]) == cli.BAD_INPUT
+        one_message(capsys, "the file that is read")
+        assert job.read_text() == before
+
+    def test_an_interrupt_leaves_nothing(self, write_job, tmp_path, capsys, monkeypatch):
+        def interrupted(*_, **__):
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr("zerorev.planning.plan_job", interrupted)
+        assert main(["plan", str(write_job()), "-o", str(tmp_path / "plan.json")]) == cli.INTERRUPTED
+        one_message(capsys, "interrupted")
+        assert [path.name for path in tmp_path.iterdir()] == ["panel.yaml"]
+
+    def test_a_fault_is_told_from_a_wrong_input(self, write_job, capsys, monkeypatch):
+        def broken(*_, **__):
+            raise ZeroDivisionError
+
+        monkeypatch.setattr("zerorev.planning.plan_job", broken)
+        assert main(["plan", str(write_job())]) == cli.BUG
+        assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+@pytest.fixture
+def no_planning(monkeypatch):
+    def planned(*_, **__):
+        pytest.fail("planned although the output cannot be written")
+
+    monkeypatch.setattr("zerorev.planning.plan_job", planned)
+
+
+class TestExport:
+    def test_refused_while_a_hole_has_no_motion(self, plan_file, capsys):
+        assert main(["export", str(plan_file)]) == cli.FOUND
+        one_message(capsys, "not exported", "far [away]")
+        assert list(plan_file.parent.glob("*.src")) == []
+
+    def test_skip_failed(self, plan_file, capsys, tmp_path):
+        target = tmp_path / "drill.src"
+        assert main(["export", str(plan_file), "--skip-failed", "-o", str(target)]) == cli.FINE
+        out, err = capsys.readouterr()
+        assert "DEF drill" in target.read_text()
+        assert "far [away]" in out
+        assert str(target) in out
+        assert err == ""
+
+    def test_lies_beside_the_plan_by_default(self, plan_file, capsys, tmp_path):
+        copy = tmp_path / "any.json"
+        copy.write_bytes(plan_file.read_bytes())
+        assert main(["export", str(copy), "--skip-failed"]) == cli.FINE
+        assert (tmp_path / "panel.src").exists()
+
+    def test_a_name_that_the_controller_would_not_take(self, plan_file, capsys, tmp_path):
+        assert main(["export", str(plan_file), "--skip-failed", "-o", str(tmp_path / "my-prog.src")]) == cli.FINE
+        assert "my_prog.src" in capsys.readouterr().err
+
+    def test_unknown_controller(self, plan_file, capsys):
+        assert main(["export", str(plan_file), "--controller", "abacus"]) == cli.BAD_INPUT
+        one_message(capsys, "abacus", "krl")
+
+    def test_no_such_folder(self, plan_file, tmp_path, capsys):
+        assert main(["export", str(plan_file), "-o", str(tmp_path / "no" / "p.src")]) == cli.BAD_INPUT
+        one_message(capsys, "does not exist")
+
+
+class TestCheck:
+    def test_a_sound_plan(self, write_job, tmp_path, capsys):
+        target = tmp_path / "plan.json"
+        assert main(["plan", str(write_job()), "-o", str(target)]) == cli.FINE
+        capsys.readouterr()
+        assert main(["check", str(target)]) == cli.FINE
+        assert "yes" in capsys.readouterr().out
+
+    def test_a_forged_plan(self, plan_file, tmp_path, capsys):
+        data = json.loads(plan_file.read_text())
+        data["holes"] = data["holes"][:1]
+        data["holes"][0]["psi_deg"][1] += 20.0
+        forged = tmp_path / "forged.json"
+        forged.write_text(json.dumps(data))
+        assert main(["check", str(forged)]) == cli.FOUND
+        out = capsys.readouterr().out
+        assert "FAILED" in out
+        assert any(line.startswith("error") and "check" in line for line in out.splitlines())
+
+    def test_json(self, plan_file, capsys):
+        assert main(["check", str(plan_file), "--json"]) == cli.FOUND
+        data = json.loads(capsys.readouterr().out)
+        assert data["holes"][0]["verified"]["passed"] is True
+
+    @pytest.mark.parametrize(
+        "damage",
+        [
+            lambda t: t[: len(t) // 2],
+            lambda t: t.replace("zerorev.plan/1", "other/1"),
+            lambda t: "robot: x",
+            lambda t: "",
+        ],
+        ids=["cut", "format", "yaml", "empty"],
+    )
+    @pytest.mark.parametrize("command", ["check", "export"])
+    def test_not_a_plan(self, command, damage, plan_file, tmp_path, capsys):
+        broken = tmp_path / "broken.json"
+        broken.write_text(damage(plan_file.read_text()))
+        assert main([command, str(broken)]) == cli.BAD_INPUT
+        one_message(capsys, "broken.json")
+        assert list(tmp_path.iterdir()) == [broken]
+
+
+class TestRobots:
+    def test_list(self, capsys):
+        assert main(["robots"]) == cli.FINE
+        out = capsys.readouterr().out
+        for part in ("kuka_kr6_r700_2", "KUKA", "726", "A1 ±170", "yaskawa_gp8", "Staubli"):
+            assert part in out
+
+    def test_one(self, capsys):
+        assert main(["robots", "kuka_kr6_r700_2"]) == cli.FINE
+        out = capsys.readouterr().out
+        assert "kroshu/kuka_robot_descriptions" in out
+        assert "beware" in out
+
+    def test_json(self, capsys):
+        assert main(["robots", "--json"]) == cli.FINE
+        assert len(json.loads(capsys.readouterr().out)) >= 5
+        assert main(["robots", "abb_irb4600_60_205", "--json"]) == cli.FINE
+        assert json.loads(capsys.readouterr().out)["name"] == "abb_irb4600_60_205"
+
+    def test_unknown(self, capsys):
+        assert main(["robots", "r2d2"]) == cli.BAD_INPUT
+        one_message(capsys, "r2d2", "yaskawa_gp8")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["plann"], ["plan"], ["plan", "a", "b"], ["plan", "--colour", "a"], ["export", "a", "-o"]],
+    ids=" ".join,
+)
+def test_arguments_that_make_no_sense(arguments, capsys):
+    assert main(arguments) == cli.BAD_INPUT
+    one_message(capsys)
+
+
+def test_help_tells_the_exit_codes(capsys):
+    assert main(["plan", "--help"]) == cli.FINE
+    out = capsys.readouterr().out
+    for code in (cli.FINE, cli.FOUND, cli.BAD_INPUT, cli.BUG, cli.INTERRUPTED):
+        assert f" {code}: " in out
+
+
+def run(*arguments, **options):
+    command = [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main())", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, **options)
+
+
+def test_version():
+    from importlib.metadata import version
+
+    done = run("--version")
+    assert (done.returncode, done.stdout.strip()) == (0, version("zerorev"))
+
+
+def test_help_needs_nothing_heavy():
+    code = (
+        "import sys; from zerorev.cli import main; main(['--help']);"
+        "sys.exit(any(name in sys.modules for name in ('numpy', 'numba', 'scipy', 'matplotlib', 'pydantic')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
+
+
+def test_a_closed_pipe_is_no_fault():
+    read, written = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main(['robots']))"],
+        stdout=written, stderr=subprocess.PIPE, text=True, check=False,
+    )  # fmt: skip
+    os.close(written)
+    assert (done.returncode, done.stderr) == (cli.PIPE_CLOSED, "")
+
+
+def test_a_terminal_without_arrows():
+    done = run("robots", env=os.environ | {"PYTHONIOENCODING": "ascii"})
+    assert done.returncode == 0
+    assert "A1 ?170" in done.stdout
