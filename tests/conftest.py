@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 from hypothesis import settings
-from oracles.published import POSITIONS, Position
 
+from oracles.published import POSITIONS, Position
 from zerorev.model.files import read_robot, read_tool, robot_names
 
-settings.register_profile("deterministic", derandomize=True, deadline=None, database=None, print_blob=False)
+settings.register_profile("deterministic", derandomize=True, deadline=None, database=None, max_examples=50)
 settings.load_profile("deterministic")
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles import arm as twin
 from scipy.optimize import brentq, minimize_scalar
 
+from oracles import arm as twin
 from zerorev import kinematics
 from zerorev.evaluation import (
     Evaluation,
@@ -129,7 +129,11 @@ class TestEvents:
             if np.abs(profile.standoff - event.standoff).min() < 1e-12:
                 continue
             segments = range(profile.corner) if event.leg == "plunge" else range(profile.corner, 5)
-            (k,) = (k for k in segments if min(profile.standoff[k : k + 2]) < event.standoff < max(profile.standoff[k : k + 2]))
+            (k,) = (
+                k
+                for k in segments
+                if min(profile.standoff[k : k + 2]) < event.standoff < max(profile.standoff[k : k + 2])
+            )
             a, slope = profile.standoff[k], profile.twist_rate[k]
 
             def rate(s, joint=event.joint, start=a, psi_start=profile.psi[k], slope=slope):
@@ -168,9 +172,7 @@ class TestEvents:
         curvature = 1.1e4  # of the dip [rad/m^3]
         psi_t = brentq(lambda p: bottom(p).fun + curvature / 2 * 4e-6**2, *np.deg2rad([91, 94]), xtol=1e-16)
         profile = Profile.straight(0.05, psi_t + slope * 0.05, psi_t, psi_t + slope * 0.04)
-        events = [
-            e for e in score_of(robot, tool, hole, profile, 6).events if e.joint == 4 and e.leg == "plunge"
-        ]
+        events = [e for e in score_of(robot, tool, hole, profile, 6).events if e.joint == 4 and e.leg == "plunge"]
         assert len(events) == 2
         assert 4e-6 < events[0].standoff - events[1].standoff < 12e-6
         assert np.mean([e.standoff for e in events]) == pytest.approx(bottom(psi_t).x, abs=2e-6)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from oracles import arm as twin
 
+from oracles import arm as twin
 from zerorev import kinematics
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
@@ -33,7 +33,7 @@ def test_poses_take_the_broadcast_shape_of_standoff_and_psi():
 
 
 def test_forward_and_inverse_take_any_batch(robot):
-    joints = np.zeros((2, 3, 6)) + [0.1, -1.2, 1.1, 0.3, 0.5, 0.7]
+    joints = np.tile([0.1, -1.2, 1.1, 0.3, 0.5, 0.7], (2, 3, 1))
     T = kinematics.forward(robot, joints)
     assert T.shape == (2, 3, 4, 4)
     assert kinematics.inverse(robot, T).shape == (2, 3, 8, 6)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from oracles import arm as twin
 
+from oracles import arm as twin
 from zerorev import kinematics
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
@@ -41,7 +41,8 @@ class TestPath:
 
     def test_follows_the_twin_on_every_robot(self, any_robot):
         tool = Tool.from_mm_deg((60, 20, 180), (0, -120, 10))
-        joints = np.array(any_robot.arm.sign) * ([0.3, 0.2, 1.4, 0.4, 0.9, 0.2] + np.array(any_robot.arm.offset))
+        bent = np.array([0.3, 0.2, 1.4, 0.4, 0.9, 0.2])
+        joints = np.array(any_robot.arm.sign) * (bent + any_robot.arm.offset)
         hole = hole_under(any_robot, tool, joints, depth=0.04, standoff=0.02)
         profile = Profile(np.array([0.04, 0.02, 0.0, 0.01, 0.04]), np.array([0.2, 0.0, -0.1, -0.3, -0.2]))
         seen = 0

@@ -71,6 +71,12 @@ def evaluate(
     if not path.runs:
         return Evaluation(None, None, _faults(robot, hole, branch, path))
     events, min_rate = _turning_points(robot, tool, hole, profile, branch)
+    # travel and extents are taken through the very points where a joint turns
+    turns = [_distance(profile, event) for event in events if event.leg != "target"]
+    if turns:
+        path = joint_path(robot, tool, hole, profile, branch, near=near, through=turns)
+        if not path.runs:
+            return Evaluation(None, None, _faults(robot, hole, branch, path))
     variation = _variation(profile, path)
     legs = np.abs(np.diff(profile.distance[[0, profile.corner, -1]]))
     counts = tuple(sum(event.joint == i + 1 for event in events) for i in range(6))
@@ -108,6 +114,12 @@ def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Fin
             ("limit", f"{name} runs from {low:.2f} to {high:.2f} deg, allowed are {allowed[0]:g} to {allowed[1]:g} deg")
         )
     return tuple(Finding("error", kind, message, hole.id) for kind, message in found)
+
+
+def _distance(profile: Profile, event: Event) -> float:
+    """Path distance [m] of an event."""
+    out = event.standoff - profile.standoff[profile.corner]
+    return float(profile.distance[profile.corner] + (out if event.leg == "retract" else -out))
 
 
 def _variation(profile: Profile, path: JointPath) -> Array:
@@ -148,14 +160,15 @@ def _turning_points(
         for i in range(6):
             # NaN, a path that touches a singularity, tells no direction either
             signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
+            before = 0  # the sample at which the joint last moved
             for n in np.flatnonzero(signs):
                 if direction[i] and signs[n] != direction[i]:
-                    # a segment's first sample turns at the breakpoint itself, any other between it and the one before
-                    place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[n - 1], x[n])
+                    # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
+                    place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[before], x[n])
                     standoff = float(start + place * (end - start))
                     where: LegName = "target" if n == 0 and k == profile.corner else leg
                     events.append((k + place, Event(i + 1, where, standoff)))
-                direction[i] = signs[n]
+                direction[i], before = signs[n], n
     events.sort(key=lambda entry: (entry[0], entry[1].joint))
     return tuple(event for _, event in events), slowest
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,14 +55,14 @@ class JointPath:
         return Motion(profile, branch, self.joints[rows])
 
 
-def sample_distances(profile: Profile, samples: int) -> Array:
-    """About `samples` path distances [m], evenly spread, with every breakpoint of the profile among them."""
+def sample_distances(profile: Profile, samples: int, through: Sequence[float] = ()) -> Array:
+    """About `samples` path distances [m], evenly spread, with the breakpoints and all of `through` among them."""
     knots = profile.distance
     parts = [
         np.linspace(a, b, max(2, int(np.ceil(samples * (b - a) / knots[-1])) + 1))[:-1]
         for a, b in zip(knots[:-1], knots[1:], strict=True)
     ]
-    return np.concatenate([*parts, knots[-1:]])
+    return np.sort(np.concatenate([*parts, knots[-1:], np.array(through)]))
 
 
 def joints_along(robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array) -> Array:
@@ -118,6 +119,7 @@ def joint_path(
     *,
     near: tuple[float, ...] | None = None,
     samples: int = 1000,
+    through: Sequence[float] = (),
 ) -> JointPath:
     """The joints along a motion on one branch (thesis eq. 3.20, 4.5), turns chosen for the whole path.
 
@@ -129,8 +131,9 @@ def joint_path(
         branch: 0..7.
         near: see `choose_turns`.
         samples: how many points, about; breakpoints are always among them.
+        through: path distances [m] that must be among them, too, e.g. those of known turning points.
     """
-    distance = sample_distances(profile, samples)
+    distance = sample_distances(profile, samples, through)
     standoff, psi = profile.at(distance)
     joints = joints_along(robot, tool, hole, branch, standoff, psi)
     lost = np.flatnonzero(np.isnan(joints[:, 0]))

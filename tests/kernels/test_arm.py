@@ -6,8 +6,8 @@ import numba
 import numpy as np
 import py_opw_kinematics as opw
 import pytest
-from oracles import arm as twin
 
+from oracles import arm as twin
 from zerorev import kinematics
 from zerorev.kernels.arm import WRIST_SINGULAR
 from zerorev.model.hole import Hole

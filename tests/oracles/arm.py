@@ -5,6 +5,8 @@ It shares the robot's numbers with `zerorev` and nothing else. Lengths in m, ang
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 X, Y, Z = np.eye(3)
@@ -124,7 +126,7 @@ def reversals(joints, nil=1e-9):
     places = []
     for steps in np.diff(joints, axis=0).T:
         moves = [(row, np.sign(step)) for row, step in enumerate(steps) if abs(step) > nil]
-        places.append([row for (_, before), (row, now) in zip(moves[:-1], moves[1:], strict=True) if before != now])
+        places.append([row for (_, before), (row, now) in pairwise(moves) if before != now])
     return places
 
 

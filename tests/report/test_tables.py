@@ -41,7 +41,9 @@ def test_verdicts(published):
     text = shown(tables.plan_table(plan))
     assert "yes" in text
     assert "FAILED" in text
-    assert tables.failed_checks(plan) == [Finding("error", "check", "x", "position 2")]
+    failed = [Finding("error", "verification", "x", "position 2")]
+    assert tables.failed_checks(plan) == failed
+    assert tables.failed_checks(replace(plan, findings=tuple(failed))) == []
 
 
 def test_where_all_joints_reverse_there_is_no_slowest(make_plan):

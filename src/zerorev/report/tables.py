@@ -94,13 +94,14 @@ def finding_lines(findings: Iterable[Finding]) -> list[Text]:
 
 
 def failed_checks(plan: Plan) -> list[Finding]:
-    """What the independent check found wrong, as findings."""
-    return [
-        Finding("error", "check", failure, hole.hole.id)
+    """What the independent check found wrong, as findings; without those that the plan already holds."""
+    found = [
+        Finding("error", "verification", failure, hole.hole.id)
         for hole in plan.holes
         if hole.verified is not None and not hole.verified.passed
         for failure in hole.verified.failures or ("the check failed",)
     ]
+    return [finding for finding in found if finding not in plan.all_findings]
 
 
 def _named(holes: Sequence[str]) -> str:

@@ -21,6 +21,7 @@ from zerorev.report.figures.field import Field, field
 __all__ = ["twist_plane"]
 
 STANDOFFS = 101
+VISIBLE = 5e-4  # of the picture: what is smaller is not in the legend
 SAME_PLACE = 0.08  # of the path: reversals this close to each other are named together
 SPIN_STEP = np.deg2rad(0.5)
 LEAST_RANGE, MARGIN = 2 * np.pi, np.deg2rad(30)  # of spins that are shown
@@ -109,7 +110,7 @@ def _regions(axes: Axes, x: Array, y: Array, patch: Field) -> list[int]:
         area.set_edgecolor(look["edgecolor"])
         area.set_linewidth(0.0)
         axes.contour(x, y, values, levels=[0.5], colors=[look["edgecolor"]], linewidths=1.2, zorder=order)
-    return [i for i in range(6) if (patch.over_limit[..., i] & patch.reached).any()]
+    return [i for i in range(6) if (patch.over_limit[..., i] & patch.reached).mean() > VISIBLE]
 
 
 def _sign_changes(axes: Axes, plan: Plan, x: Array, y: Array, patch: Field) -> list[int]:
@@ -229,6 +230,6 @@ def _handles(plan: Plan, hole: HolePlan, patch: Field, crossed: list[int], limit
                               linestyle="none", label="reversal"))  # fmt: skip
     if limited:
         handles.append(Patch(**LIMITED, label=f"over a joint limit ({', '.join(names[i] for i in limited)})"))
-    if not patch.reached.all():
+    if 1 - patch.reached.mean() > VISIBLE:
         handles.append(Patch(**UNREACHED, label="out of reach"))
     return handles + style.no_effect(plan, patch.stuck)

@@ -1,0 +1,45 @@
+# `make demo` and `make test` do all of their own set-up: a virtual environment, the pinned dependencies, the install.
+PYTHON ?= python3
+VENV ?= .venv
+OUT ?= out/demo
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+.PHONY: demo test quick lint schemas clean
+
+demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
+	mkdir -p $(OUT)
+	@echo "--- the thesis' own plans, evaluated"
+	$(BIN)/zerorev plan examples/jobs/thesis_published.yaml -o $(OUT)/thesis_published.plan.json
+	@echo "--- the least travel without a reversal, motion threshold off"
+	$(BIN)/zerorev plan examples/jobs/thesis_least_travel.yaml -o $(OUT)/thesis_least_travel.plan.json
+	@echo "--- the default: every joint keeps moving, at every point"
+	$(BIN)/zerorev plan examples/jobs/thesis_positions.yaml -o $(OUT)/thesis_positions.plan.json --figures $(OUT)/figures
+	$(BIN)/zerorev check $(OUT)/thesis_positions.plan.json
+	$(BIN)/zerorev export $(OUT)/thesis_positions.plan.json --controller krl -o $(OUT)/thesis_positions.src
+
+test: lint  ## everything that must hold
+	$(BIN)/pytest
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest tests/kernels -q
+
+quick: $(READY)  ## the tests that take no long time
+	$(BIN)/pytest -q -m "not long"
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+schemas: $(READY)  ## rewrite the published JSON Schemas of job and plan files
+	$(BIN)/python -c "from zerorev.model.files import write_schemas; write_schemas('docs/schemas')"
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt hatchling editables
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-build-isolation --editable ".[dev]"
+	touch $(READY)
+
+clean:
+	rm -rf $(VENV) out build dist
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
