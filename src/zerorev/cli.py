@@ -69,7 +69,7 @@ def plan(job: Path, /, *, output: Output = None, figures: Path | None = None, js
         json: Print the plan as JSON on standard output, and nothing else there.
     """
     from zerorev.model.files import plan_to_json, read_job, write_plan
-    from zerorev.report.output import check_file, check_folder
+    from zerorev.model.output import check_file, check_folder
 
     if output is not None:
         check_file(output)
@@ -113,8 +113,8 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
         output: The program's file; by default beside the plan, called as the plan is.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
     """
-    from zerorev.model.files import read_plan, write_text
-    from zerorev.report.output import check_file
+    from zerorev.model.files import read_plan
+    from zerorev.model.output import check_file, write_text
 
     if output is not None:
         check_file(output)

@@ -161,7 +161,7 @@ def _turning_points(
             # NaN, a path that touches a singularity, tells no direction either
             signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
             before = 0  # the sample at which the joint last moved
-            for n in np.flatnonzero(signs):
+            for n in np.flatnonzero(signs).tolist():
                 if direction[i] and signs[n] != direction[i]:
                     # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
                     place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[before], x[n])
@@ -179,8 +179,8 @@ def _with_closer_looks(x: Array, speed: Array) -> Array:
     # neither a joint that stands still nor one of constant speed dips, whatever their last digits do
     rise = np.fmax(before, after) - speed
     dips = (speed <= before) & (speed <= after) & (speed > NIL_RATE) & (rise > 1e-6 * speed)
-    last = len(x) - 1
-    looks = (np.linspace(x[max(n - 1, 0)], x[min(n + 1, last)], CLOSER_LOOK) for n in np.flatnonzero(dips.any(axis=1)))
+    found, last = np.flatnonzero(dips.any(axis=1)).tolist(), len(x) - 1
+    looks = (np.linspace(x[max(n - 1, 0)], x[min(n + 1, last)], CLOSER_LOOK) for n in found)
     return np.unique(np.concatenate([x, *looks]))
 
 

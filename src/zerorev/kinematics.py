@@ -131,10 +131,8 @@ def joint_rates(
     return theta_s, theta_psi
 
 
-def critical_rates(
-    robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike
-) -> Array:
-    """kappa [rad/m], shape (..., 8, 6): the twist rates at which a joint stands still (theory §2)."""
+def critical_rates(robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike) -> Array:
+    """Kappa [rad/m], shape (..., 8, 6): the twist rates at which a joint stands still (theory §2)."""
     theta_s, theta_psi = joint_rates(robot, tool, hole, standoff, psi)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(-theta_s / theta_psi)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -59,8 +60,7 @@ def sample_distances(profile: Profile, samples: int, through: Sequence[float] = 
     """About `samples` path distances [m], evenly spread, with the breakpoints and all of `through` among them."""
     knots = profile.distance
     parts = [
-        np.linspace(a, b, max(2, int(np.ceil(samples * (b - a) / knots[-1])) + 1))[:-1]
-        for a, b in zip(knots[:-1], knots[1:], strict=True)
+        np.linspace(a, b, max(2, int(np.ceil(samples * (b - a) / knots[-1])) + 1))[:-1] for a, b in pairwise(knots)
     ]
     return np.sort(np.concatenate([*parts, knots[-1:], np.array(through)]))
 
@@ -149,7 +149,7 @@ def joint_path(
 def outward_rates(
     robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array, twist_rate: float
 ) -> Array:
-    """d theta / d s along a leg of slope u [rad/m] at points (N,), read outwards [rad/m], shape (N, 6) (theory §2)."""
+    """D theta / d s along a leg of slope u [rad/m] at points (N,), read outwards [rad/m], shape (N, 6) (theory §2)."""
     shape = (standoff.size, 6)
     theta_s, theta_psi = np.empty(shape), np.empty(shape)
     kernels.rates_along(
@@ -159,4 +159,3 @@ def outward_rates(
     rates = theta_s + twist_rate * theta_psi
     rates[:, 4] *= kernels.flip_sign(robot.arm, branch)
     return rates
-

@@ -15,7 +15,7 @@ from zerorev.model.plan import Baseline, Finding, HolePlan, Plan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.exact import search
+from zerorev.search.exact import can_run, search
 from zerorev.verify.check import verify_hole
 
 __all__ = ["plan", "plan_job"]
@@ -119,7 +119,8 @@ def _baseline(
 def _findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
     """What a user should know of a motion that can be run."""
     score, hole = answer.score, answer.hole
-    assert score is not None and answer.verified is not None
+    assert score is not None
+    assert answer.verified is not None
     found = []
     for event in score.events:
         place = "at the target" if event.leg == "target" else f"in the {event.leg}, {event.standoff * 1e3:.2f} mm out"
@@ -130,8 +131,8 @@ def _findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Findi
         slowest = int(np.argmin(np.where(steady, rates, np.inf)))
         what = "its slowest point" if settings.min_rate_rule == "pointwise" else "the average of a leg"
         message = (
-            f"{robot.joint_names[slowest]} moves only {np.rad2deg(rates[slowest]) / 1e3:.5f} deg/mm at {what}, below the"
-            f" motion threshold of {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm"
+            f"{robot.joint_names[slowest]} moves only {np.rad2deg(rates[slowest]) / 1e3:.5f} deg/mm at {what}, below"
+            f" the motion threshold of {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm"
         )
         if answer.status == "planned":
             message += "; this is the greatest margin that a motion with so few reversals has"
@@ -155,10 +156,8 @@ def _lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:
 
 def _why_infeasible(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
     """Which of reach, limits or the bound on the spin leaves no motion at all."""
-    wide = replace(
-        robot, limits=replace(robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi))
-    )
-    if search(wide, tool, hole, replace(settings, min_rate=0.0)) is not None:
+    wide = replace(robot, limits=replace(robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi)))
+    if can_run(wide, tool, hole, settings):
         spins = "" if settings.psi_bound is None else f" within +-{np.rad2deg(settings.psi_bound):g} deg of spin"
         message = f"no branch drills it within the joint limits{spins}"
         return (Finding("error", "limit", message, hole.id),)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from zerorev.errors import InputError, OutputError
-from zerorev.model import files
+from zerorev.model import files, output
 from zerorev.model._arrays import rotation_rpy, transform
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -497,7 +497,7 @@ def test_paths_that_no_system_takes() -> None:
         for read in (files.read_job, files.read_plan, files.read_robot, files.read_tool):
             assert "cannot be read" in refusal(lambda read=read, path=path: read(path))
         with pytest.raises(OutputError):
-            files.write_text(path, "text")
+            output.write_text(path, "text")
 
 
 # --- writing ----------------------------------------------------------------------------------------------------------
@@ -506,8 +506,8 @@ def test_paths_that_no_system_takes() -> None:
 def test_writing_replaces_the_whole_file_and_follows_links(tmp_path: Path) -> None:
     path, link = tmp_path / "out.txt", tmp_path / "link.txt"
     link.symlink_to(path)
-    files.write_text(path, "old")
-    files.write_text(str(link), "new ü\n")
+    output.write_text(path, "old")
+    output.write_text(str(link), "new ü\n")
     assert path.read_bytes() == "new ü\n".encode()
     assert link.is_symlink()
     assert sorted(tmp_path.iterdir()) == [link, path]
@@ -519,23 +519,23 @@ def test_output_that_cannot_be_written_leaves_nothing(tmp_path: Path, monkeypatc
 
     path = tmp_path / "out.txt"
     with pytest.raises(OutputError, match=r"folder .*none does not exist; nothing was written"):
-        files.write_text(tmp_path / "none" / "out.txt", "x")
+        output.write_text(tmp_path / "none" / "out.txt", "x")
     with pytest.raises(OutputError, match="it is a folder"):
-        files.write_text(tmp_path, "x")
+        output.write_text(tmp_path, "x")
     with pytest.raises(OutputError, match="not a regular file"):
-        files.write_text(os.devnull, "x")
+        output.write_text(os.devnull, "x")
     with pytest.raises(OutputError, match="surrogates not allowed"):
-        files.write_text(path, "\ud800")
+        output.write_text(path, "\ud800")
     path.write_text("old")
     monkeypatch.setattr(os, "access", lambda *_: False)  # root may do anything, so the system cannot be asked here
     with pytest.raises(OutputError, match="no write permission"):
-        files.write_text(path, "x")
+        output.write_text(path, "x")
     monkeypatch.undo()
     for name in ("fsync", "replace"):
         with monkeypatch.context() as patch:
             patch.setattr(os, name, no_space)
             with pytest.raises(OutputError, match="No space left"):
-                files.write_text(path, "x")
+                output.write_text(path, "x")
     assert [(entry.name, entry.read_text()) for entry in tmp_path.iterdir()] == [("out.txt", "old")]
 
 

@@ -32,7 +32,9 @@ def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-d
     Args:
         arm: `ArmGeometry`.
         R: flange rotation, shape (3, 3).
-        wx: wrist centre, x [m]; wy, wz likewise.
+        wx: wrist centre, x [m].
+        wy: wrist centre, y [m].
+        wz: wrist centre, z [m].
         posture: 0..3.
         cs: out, shape (6, 2): cosine and sine of each model angle.
 
@@ -103,8 +105,12 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     Args:
         arm: `ArmGeometry`.
         cs: cosines and sines of the model angles, shape (6, 2).
-        vx: velocity of the wrist centre, base frame; vy, vz likewise.
-        ox: angular velocity of the flange, base frame; oy, oz likewise.
+        vx: velocity of the wrist centre in the base frame, x.
+        vy: the same, y.
+        vz: the same, z.
+        ox: angular velocity of the flange in the base frame, x.
+        oy: the same, y.
+        oz: the same, z.
         out: out, shape (6,): rates of the controller angles.
     """
     c1, s1, c2, s2 = cs[0, 0], cs[0, 1], cs[1, 0], cs[1, 1]

@@ -14,12 +14,13 @@ from zerorev.errors import InputError
 from zerorev.model.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
+from zerorev.model.output import write_text
 from zerorev.model.plan import Plan
 from zerorev.model.plan_conversion import plan_data, plan_from
 from zerorev.model.plan_schema import PlanFile
 from zerorev.model.robot import Robot
 from zerorev.model.schema import Form, HoleForm, JobFile, RobotFile, ToolFile
-from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text, write_text, yaml_document
+from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text, yaml_document
 from zerorev.model.tool import Tool
 from zerorev.model.validation import checked, inside
 
@@ -34,7 +35,6 @@ __all__ = [
     "tool_names",
     "write_plan",
     "write_schemas",
-    "write_text",
 ]
 
 

@@ -82,8 +82,9 @@ def psi_zero_vector(
         return _nearest_base(target, direction, tool, where)
     axes = {"base_y": np.array([0.0, 1.0, 0.0]), "part_x": T_base_part[:3, 0], "part_y": T_base_part[:3, 1]}
     if reference not in axes:
-        raise InputError(f"unknown reference '{reference}'", where="psi_reference",
-                         accepted=f"{', '.join(REFERENCES)}, or a vector")
+        raise InputError(
+            f"unknown reference '{reference}'", where="psi_reference", accepted=f"{', '.join(REFERENCES)}, or a vector"
+        )
     return _perpendicular(axes[reference], direction, where, reference)
 
 
@@ -94,8 +95,11 @@ def _perpendicular(vector: Array, direction: Array, where: str, name: str = "psi
     if abs(given @ direction) < UNIT_TOLERANCE and abs(length - 1) < UNIT_TOLERANCE:
         return given  # of a plan file: to stay as it is, digit for digit
     if length < 1e-6 * max(1.0, float(np.linalg.norm(vector))):
-        raise InputError(f"{name} is parallel to the drill axis, so it cannot count the spin", where=where,
-                         accepted=f"another of {', '.join(REFERENCES)}, or a vector across the drill axis")
+        raise InputError(
+            f"{name} is parallel to the drill axis, so it cannot count the spin",
+            where=where,
+            accepted=f"another of {', '.join(REFERENCES)}, or a vector across the drill axis",
+        )
     return across / length
 
 
@@ -104,8 +108,11 @@ def _nearest_base(target: Array, direction: Array, tool: Tool, where: str) -> Ar
     R, tip = tool.T_flange_tcp[:3, :3], tool.T_flange_tcp[:3, 3]
     flange = -R.T @ tip  # the flange's origin in the tcp frame
     if np.hypot(flange[0], flange[1]) < 1e-9:
-        raise InputError("the flange lies on the drill axis, so no spin brings it nearer to the base", where=where,
-                         accepted="another psi_reference")
+        raise InputError(
+            "the flange lies on the drill axis, so no spin brings it nearer to the base",
+            where=where,
+            accepted="another psi_reference",
+        )
     z = -direction
     x = np.cross(np.eye(3)[np.argmin(np.abs(z))], z)
     x /= np.linalg.norm(x)

@@ -67,8 +67,11 @@ class Settings:
             _check(0 <= self.blend_shortfall <= self.blend, "blend_shortfall", "0 to the blend radius")
         if self.spindle_rpm is not None:
             _check(self.spindle_rpm > 0, "spindle_rpm", "above 0, or none")
-        _check(len(self.reversal_weights) == 6 and all(w > 0 for w in self.reversal_weights), "reversal_weights",
-               "six numbers above 0")
+        _check(
+            len(self.reversal_weights) == 6 and all(w > 0 for w in self.reversal_weights),
+            "reversal_weights",
+            "six numbers above 0",
+        )
         if self.near_joints is not None:
             _check(len(self.near_joints) == 6, "near_joints", "six angles")
 

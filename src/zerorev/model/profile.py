@@ -42,8 +42,9 @@ class Profile:
             )
 
     @classmethod
-    def straight(cls, depth: float, psi_start: float, psi_target: float, psi_end: float, *, corner: float = 0.0
-                 ) -> Profile:
+    def straight(
+        cls, depth: float, psi_start: float, psi_target: float, psi_end: float, *, corner: float = 0.0
+    ) -> Profile:
         """Two straight legs (thesis eq. 3.20): depth and corner stand-off [m], spins [rad]."""
         return cls(np.array([depth, corner, depth]), np.array([psi_start, psi_target, psi_end]))
 

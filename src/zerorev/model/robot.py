@@ -88,11 +88,20 @@ class Robot:
         arm = self.arm
         lengths = finite(arm[:7], (7,), f"robot {self.name}, geometry")
         if min(arm.c2, np.hypot(arm.c3, arm.a2)) <= 0:
-            raise InputError("the upper arm or the forearm has no length", where=f"robot {self.name}, geometry",
-                             accepted="c2 > 0 and c3 or a2 other than 0")
+            raise InputError(
+                "the upper arm or the forearm has no length",
+                where=f"robot {self.name}, geometry",
+                accepted="c2 > 0 and c3 or a2 other than 0",
+            )
         if any(abs(s) != 1 for s in arm.sign):
             raise InputError("a joint sign is neither 1 nor -1", where=f"robot {self.name}", accepted="1 or -1")
         offset = finite(arm.offset, (6,), f"robot {self.name}, offset")
+        if offset[4] != 0:
+            raise InputError(
+                "joint 5 has an offset, but its sign tells the branches apart",
+                where=f"robot {self.name}, offset",
+                accepted="0 for joint 5, so that it is straight at 0",
+            )
         # plain floats throughout: an int would be another type, and another compilation, to the kernels
         a1, a2, b, c1, c2, c3, c4 = map(float, lengths)
         object.__setattr__(self, "arm", ArmGeometry(a1, a2, b, c1, c2, c3, c4, six(arm.sign), six(offset)))

@@ -1,4 +1,4 @@
-"""Between the disk and plain data: YAML, JSON and CSV in, JSON out, and the one writer of files.
+"""Between the disk and plain data: YAML, JSON and CSV in, JSON out.
 
 Whatever the bytes are, reading them ends in plain data or in an `InputError` that names the file and the line.
 """
@@ -8,7 +8,6 @@ from __future__ import annotations
 import csv
 import json
 import math
-import os
 import re
 import reprlib
 from collections.abc import Callable, Iterator
@@ -18,9 +17,9 @@ from typing import Any, NoReturn
 
 import yaml
 
-from zerorev.errors import InputError, OutputError
+from zerorev.errors import InputError
 
-__all__ = ["Document", "csv_rows", "json_document", "json_text", "read_text", "write_text", "yaml_document"]
+__all__ = ["Document", "csv_rows", "json_document", "json_text", "read_text", "yaml_document"]
 
 MAX_BYTES = 64 * 2**20
 LINE_WIDTH = 160
@@ -276,41 +275,3 @@ def _number(text: str, where: str) -> float:
 
 
 # --- writing ----------------------------------------------------------------------------------------------------------
-
-
-def write_text(path: str | Path, text: str) -> None:
-    """Write a text file whole or not at all: written beside, then renamed.
-
-    Raises:
-        OutputError: no such folder, a folder of that name, no permission, a full disk.
-    """
-    try:
-        target = Path(os.path.realpath(path))  # through a link to the file it stands for
-        if why := _obstacle(target):
-            raise OutputError(str(path), why)
-        beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        try:
-            with beside.open("x", encoding="utf-8", newline="\n") as stream:
-                stream.write(text)
-                stream.flush()
-                os.fsync(stream.fileno())
-            os.replace(beside, target)
-        except BaseException:
-            beside.unlink(missing_ok=True)
-            raise
-    except (OSError, ValueError) as error:  # ValueError: a null byte in the path, text that no file can hold
-        why = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise OutputError(str(path), why) from None
-
-
-def _obstacle(target: Path) -> str:
-    """Why this file cannot be written, or nothing: a rename would go over a device or a read-only file."""
-    if not target.parent.is_dir():
-        return f"the folder {target.parent} does not exist"
-    if target.is_dir():
-        return "it is a folder"
-    if target.exists() and not target.is_file():
-        return "it is not a regular file"
-    if target.exists() and not os.access(target, os.W_OK):
-        return "no write permission"
-    return ""

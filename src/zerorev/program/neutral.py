@@ -145,8 +145,12 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
     refused = _refusals(plan)
     kept = [hole for hole in plan.holes if hole.hole.id not in refused]
     if None in refused or (refused and not skip_failed) or not kept:
-        raise NotExportableError(tuple(refused.values()) or ("the plan has no holes",))
-    holes, findings = [], [_skipped(hole_id, why) for hole_id, why in refused.items()]
+        reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
+        raise NotExportableError(tuple(reasons) or ("the plan has no holes",))
+    holes, findings = (
+        [],
+        [Finding("warning", "skipped", f"left out of the program: {why}", hole_id) for hole_id, why in refused.items()],
+    )
     for hole in kept:
         moves, found = _hole_program(plan, hole)
         holes.append(moves)
@@ -171,11 +175,11 @@ def _refusals(plan: Plan) -> dict[str | None, str]:
     reasons: dict[str | None, str] = {}
     errors = [finding for finding in plan.findings if finding.level == "error"]
     if whole := [finding.message for finding in errors if finding.hole is None]:
-        reasons[None] = f"the plan: {'; '.join(whole)}"
+        reasons[None] = "; ".join(whole)
     for hole in plan.holes:
         own = [*hole.findings, *(finding for finding in errors if finding.hole == hole.hole.id)]
         if why := _why_not(hole, [finding.message for finding in own if finding.level == "error"]):
-            reasons[hole.hole.id] = f"hole {hole.hole.id}: {why}"
+            reasons[hole.hole.id] = why
     return reasons
 
 
@@ -189,10 +193,6 @@ def _why_not(hole: HolePlan, errors: list[str]) -> str:
     if not hole.verified.passed:
         return "it did not pass the check: " + ("; ".join(hole.verified.failures) or "no reason given")
     return ""
-
-
-def _skipped(hole_id: str | None, why: str) -> Finding:
-    return Finding("warning", "skipped", f"left out of the program: {why}", hole_id)
 
 
 def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Finding, ...]]:

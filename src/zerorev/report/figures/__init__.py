@@ -8,12 +8,12 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from zerorev.model.output import make_folder, write_bytes
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.plane import twist_plane
 from zerorev.report.figures.rates import critical_rates
 from zerorev.report.figures.style import png
-from zerorev.report.output import make_folder, write_bytes
 
 __all__ = ["FIGURES", "critical_rates", "file_stems", "joint_angles", "twist_plane", "write_figures"]
 

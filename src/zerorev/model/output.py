@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from zerorev.errors import OutputError
 
-__all__ = ["check_file", "check_folder", "make_folder", "write_bytes"]
+__all__ = ["check_file", "check_folder", "make_folder", "write_bytes", "write_text"]
 
 
-def check_file(path: Path) -> None:
+def check_file(path: str | Path) -> None:
     """Make sure, before long work, that a file can be written there.
 
     Raises:
@@ -28,7 +28,7 @@ def check_file(path: Path) -> None:
         _check_access(path, target.parent)
 
 
-def check_folder(path: Path) -> None:
+def check_folder(path: str | Path) -> None:
     """Make sure, before long work, that files can be written into a folder, or that it can be made.
 
     Raises:
@@ -43,7 +43,7 @@ def check_folder(path: Path) -> None:
         _check_access(path, target if target.exists() else target.parent)
 
 
-def make_folder(path: Path) -> None:
+def make_folder(path: str | Path) -> None:
     """Make a folder whose parent exists; a folder that is there stays as it is.
 
     Raises:
@@ -51,37 +51,50 @@ def make_folder(path: Path) -> None:
     """
     check_folder(path)
     with _as_output_error(path):
-        path.mkdir(exist_ok=True)
+        Path(path).mkdir(exist_ok=True)
 
 
-def write_bytes(path: Path, data: bytes) -> None:
+def write_text(path: str | Path, text: str) -> None:
+    """Write a text file, UTF-8 with plain line feeds, whole or not at all.
+
+    Raises:
+        OutputError: as `write_bytes`, or text that no file can hold.
+    """
+    with _as_output_error(path):
+        data = text.encode()
+    write_bytes(path, data)
+
+
+def write_bytes(path: str | Path, data: bytes) -> None:
     """Write a file whole or not at all: written beside, then renamed.
 
     Raises:
         OutputError: as `check_file`, or a full disk.
     """
     check_file(path)
-    target = Path(os.path.realpath(path))
-    beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        with _as_output_error(path):
+    with _as_output_error(path):
+        target = Path(os.path.realpath(path))  # through a link to the file it stands for
+        beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+        try:
             with beside.open("xb") as stream:
                 stream.write(data)
+                stream.flush()
+                os.fsync(stream.fileno())
             os.replace(beside, target)
-    finally:
-        with suppress(OSError, ValueError):
+        except BaseException:
             beside.unlink(missing_ok=True)
+            raise
 
 
-def _check_access(path: Path, place: Path) -> None:
+def _check_access(path: str | Path, place: Path) -> None:
     if not os.access(place, os.W_OK | (os.X_OK if place.is_dir() else 0)):
         raise OutputError(str(path), f"no write permission for {place}")
 
 
 @contextmanager
-def _as_output_error(path: Path) -> Iterator[None]:
+def _as_output_error(path: str | Path) -> Iterator[None]:
     """What the system says about a path, as an `OutputError`."""
     try:
         yield
-    except (OSError, ValueError) as error:  # ValueError: a null byte in the path
+    except (OSError, ValueError) as error:  # ValueError: a null byte in the path, a lone surrogate
         raise OutputError(str(path), (isinstance(error, OSError) and error.strerror) or str(error)) from None

@@ -7,7 +7,7 @@ import os
 import pytest
 
 from zerorev.errors import OutputError
-from zerorev.report import output
+from zerorev.model import output
 
 
 def test_writes(tmp_path):

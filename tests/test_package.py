@@ -1,0 +1,86 @@
+"""The package as a user meets it: its public names, how fast it imports, and its examples."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import zerorev
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
+JOBS = sorted((ROOT / "examples" / "jobs").glob("*.yaml"))
+
+
+def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=ROOT, check=False)
+
+
+@pytest.mark.parametrize("name", zerorev.__all__)
+def test_every_public_name_is_there_and_documented(name):
+    assert getattr(zerorev, name).__doc__
+    assert name in dir(zerorev)
+
+
+def test_the_public_names_are_these():
+    homes = {name for names in zerorev._HOMES.values() for name in names}
+    assert sorted(homes) == zerorev.__all__ == sorted(zerorev.__all__)
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = zerorev.nonsense
+
+
+def test_importing_loads_nothing_heavy():
+    heavy = "numpy numba scipy pydantic yaml matplotlib rich cyclopts"
+    done = run("-c", f"import sys, zerorev; print([m for m in '{heavy}'.split() if m in sys.modules])")
+    assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_types_are_published():
+    assert (Path(zerorev.__file__).parent / "py.typed").exists()
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+def test_example_runs(example):
+    done = run("-W", "error", os.fspath(example))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
+
+
+def test_the_readme_shows_the_first_example():
+    code = (ROOT / "examples" / "01_one_hole.py").read_text().splitlines()
+    readme = (ROOT / "README.md").read_text()
+    assert all(line in readme for line in code[2:-1])
+
+
+@pytest.mark.long
+def test_the_panel_of_a_hundred_holes(tmp_path):
+    job = zerorev.read_job(ROOT / "examples" / "jobs" / "panel.yaml")
+    seen = []
+    plan = zerorev.plan_job(job, progress=lambda done, total: seen.append((done, total)))
+    assert seen[-1] == (100, 100)
+    assert len(plan.holes) == 100
+    planned = [hole for hole in plan.holes if hole.status == "planned"]
+    assert len(planned) == 99
+    assert all(hole.score.reversals == 0 and hole.verified.passed for hole in planned)
+    assert [(finding.kind, finding.hole) for finding in plan.all_findings] == [("unreachable", "R9C0")]
+    program = zerorev.export(plan, "krl", skip_failed=True)
+    assert program.text.count("PTP {AXIS") == 99
+
+
+@pytest.mark.parametrize("job", [path for path in JOBS if path.stem != "panel"], ids=lambda path: path.stem)
+def test_job_is_planned_checked_and_exported(job, tmp_path):
+    plan, program = tmp_path / "plan.json", tmp_path / "program.src"
+    command = ["-m", "zerorev.cli"]
+    for arguments in (
+        ["plan", os.fspath(job), "-o", os.fspath(plan)],
+        ["check", os.fspath(plan)],
+        ["export", os.fspath(plan), "--controller", "krl", "-o", os.fspath(program)],
+    ):
+        done = run(*command, *arguments)
+        assert done.returncode == 0, done.stderr
+    assert program.read_text().count("PTP {AXIS") == 3
