@@ -27,29 +27,26 @@ __all__ = [
 
 
 class TwistPlane(NamedTuple):
-    """What a kernel needs to know of a hole and a tool (theory §1); a NamedTuple, so that kernels take it whole.
+    """What a kernel needs to know of a hole and a tool (theory §1): plain numbers, so that kernels hold them all.
 
     Attributes:
-        target: bottom of the hole [m], shape (3,).
-        R_base_tcp0: rotation of the tcp frame at psi = 0, shape (3, 3).
-        R_tcp_flange: rotation of the flange in the tcp frame, shape (3, 3).
-        wrist: wrist centre in the tcp frame [m], shape (3,).
+        target: bottom of the hole [m].
+        R_base_tcp0: rotation of the tcp frame at psi = 0, row by row.
+        R_tcp_flange: rotation of the flange in the tcp frame, row by row.
+        wrist: wrist centre in the tcp frame [m].
     """
 
-    target: Array
-    R_base_tcp0: Array
-    R_tcp_flange: Array
-    wrist: Array
+    target: tuple[float, ...]
+    R_base_tcp0: tuple[float, ...]
+    R_tcp_flange: tuple[float, ...]
+    wrist: tuple[float, ...]
 
 
 def twist_plane(robot: Robot, tool: Tool, hole: Hole) -> TwistPlane:
     """The twist plane of a hole drilled by a tool on a robot (theory §1)."""
-    return TwistPlane(
-        hole.target,
-        np.ascontiguousarray(tcp_pose(hole, 0.0, 0.0)[:3, :3]),
-        np.ascontiguousarray(tool.T_flange_tcp[:3, :3].T),
-        _wrist_in_tcp(robot, tool),
-    )
+    R_base_tcp0, R_tcp_flange = tcp_pose(hole, 0.0, 0.0)[:3, :3], tool.T_flange_tcp[:3, :3].T
+    parts = (hole.target, R_base_tcp0, R_tcp_flange, _wrist_in_tcp(robot, tool))
+    return TwistPlane(*(tuple(np.ravel(part).tolist()) for part in parts))
 
 
 def _wrist_in_tcp(robot: Robot, tool: Tool) -> Array:

@@ -20,18 +20,12 @@ WRIST_SINGULAR = 1e-10
 
 
 @kernel
-def wrist_centre(R, p, c4):  # type: ignore[no-untyped-def]
-    """Intersection of axes 4 to 6 for a flange at p, turned by R."""
-    return p[0] - c4 * R[0, 2], p[1] - c4 * R[1, 2], p[2] - c4 * R[2, 2]
-
-
-@kernel
 def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-def]
     """Cosines and sines of the model angles of one posture, with sin(q5) >= 0.
 
     Args:
         arm: `ArmGeometry`.
-        R: flange rotation, shape (3, 3).
+        R: flange rotation, row by row, nine numbers.
         wx: wrist centre, x [m].
         wy: wrist centre, y [m].
         wz: wrist centre, z [m].
@@ -73,13 +67,14 @@ def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-d
     cs[2, 1] = (sin_phi * arm.c3 - cos_phi * arm.a2) / k
 
     # M = R03^T R = Rz(q4) Ry(q5) Rz(q6)
+    r00, r01, r02, r10, r11, r12, r20, r21, r22 = R
     c1, s1 = cs[0, 0], cs[0, 1]
     c23 = cs[1, 0] * cs[2, 0] - cs[1, 1] * cs[2, 1]
     s23 = cs[1, 1] * cs[2, 0] + cs[1, 0] * cs[2, 1]
-    f0 = c1 * R[0, 2] + s1 * R[1, 2]
-    m02 = c23 * f0 - s23 * R[2, 2]
-    m12 = c1 * R[1, 2] - s1 * R[0, 2]
-    m22 = s23 * f0 + c23 * R[2, 2]
+    f0 = c1 * r02 + s1 * r12
+    m02 = c23 * f0 - s23 * r22
+    m12 = c1 * r12 - s1 * r02
+    m22 = s23 * f0 + c23 * r22
     sin5 = np.sqrt(m02 * m02 + m12 * m12)
     cs[4, 0], cs[4, 1] = m22, sin5
     if sin5 > WRIST_SINGULAR:
@@ -88,10 +83,10 @@ def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-d
         c4, s4 = 1.0, 0.0
     cs[3, 0], cs[3, 1] = c4, s4
     # joint 6 from Rz(-q4) M, so that it makes good what q4 lacks in precision where sin(q5) is small
-    g0 = c1 * R[0, 0] + s1 * R[1, 0]
-    g1 = c1 * R[0, 1] + s1 * R[1, 1]
-    cs[5, 0] = c4 * (c1 * R[1, 1] - s1 * R[0, 1]) - s4 * (c23 * g1 - s23 * R[2, 1])
-    cs[5, 1] = c4 * (c1 * R[1, 0] - s1 * R[0, 0]) - s4 * (c23 * g0 - s23 * R[2, 0])
+    g0 = c1 * r00 + s1 * r10
+    g1 = c1 * r01 + s1 * r11
+    cs[5, 0] = c4 * (c1 * r11 - s1 * r01) - s4 * (c23 * g1 - s23 * r21)
+    cs[5, 1] = c4 * (c1 * r10 - s1 * r00) - s4 * (c23 * g0 - s23 * r20)
     return True
 
 
@@ -139,14 +134,13 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     wz = s23 * h0 + c23 * (oz - q1)
     q6 = (c4 * wx + s4 * wy) / s5
 
-    out[0] = q1
-    out[1] = q2
-    out[2] = q23 - q2
-    out[3] = wz - c5 * q6
-    out[4] = c4 * wy - s4 * wx
-    out[5] = q6
-    for i in range(6):
-        out[i] *= arm.sign[i]
+    sign = arm.sign
+    out[0] = sign[0] * q1
+    out[1] = sign[1] * q2
+    out[2] = sign[2] * (q23 - q2)
+    out[3] = sign[3] * (wz - c5 * q6)
+    out[4] = sign[4] * (c4 * wy - s4 * wx)
+    out[5] = sign[5] * q6
 
 
 @kernel
@@ -167,23 +161,22 @@ def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # 
         whether the pose can be reached in this posture.
     """
     c, s = np.cos(psi), np.sin(psi)
-    R0, F = plane.R_base_tcp0, plane.R_tcp_flange
-    R = np.empty((3, 3))
-    for i in range(3):
-        x, y, z = R0[i, 0] * c + R0[i, 1] * s, R0[i, 1] * c - R0[i, 0] * s, R0[i, 2]
-        for j in range(3):
-            R[i, j] = x * F[0, j] + y * F[1, j] + z * F[2, j]
-    # wrist centre: the tip, and the lever of the spin turned with it
-    zx, zy, zz = R0[0, 2], R0[1, 2], R0[2, 2]
-    w = plane.wrist
-    lx, ly = w[0] * c - w[1] * s, w[0] * s + w[1] * c
-    rx = R0[0, 0] * lx + R0[0, 1] * ly
-    ry = R0[1, 0] * lx + R0[1, 1] * ly
-    rz = R0[2, 0] * lx + R0[2, 1] * ly
-    along = standoff + w[2]
-    wx = plane.target[0] + along * zx + rx
-    wy = plane.target[1] + along * zy + ry
-    wz = plane.target[2] + along * zz + rz
+    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
+    # the tcp frame turned by psi about its z axis: columns a, b, z
+    a0, a1, a2 = c * x0 + s * y0, c * x1 + s * y1, c * x2 + s * y2
+    b0, b1, b2 = c * y0 - s * x0, c * y1 - s * x1, c * y2 - s * x2
+    f00, f01, f02, f10, f11, f12, f20, f21, f22 = plane.R_tcp_flange
+    R = (
+        a0 * f00 + b0 * f10 + zx * f20, a0 * f01 + b0 * f11 + zx * f21, a0 * f02 + b0 * f12 + zx * f22,
+        a1 * f00 + b1 * f10 + zy * f20, a1 * f01 + b1 * f11 + zy * f21, a1 * f02 + b1 * f12 + zy * f22,
+        a2 * f00 + b2 * f10 + zz * f20, a2 * f01 + b2 * f11 + zz * f21, a2 * f02 + b2 * f12 + zz * f22,
+    )  # fmt: skip
+    # wrist centre: the tip, and the lever r of the spin turned with it
+    w0, w1, w2 = plane.wrist
+    rx, ry, rz = a0 * w0 + b0 * w1, a1 * w0 + b1 * w1, a2 * w0 + b2 * w1
+    along = standoff + w2
+    t0, t1, t2 = plane.target
+    wx, wy, wz = t0 + along * zx + rx, t1 + along * zy + ry, t2 + along * zz + rz
     if not solve_posture(arm, R, wx, wy, wz, posture, cs):
         return False
     joint_velocity(arm, cs, zx, zy, zz, 0.0, 0.0, 0.0, theta_s)
@@ -233,8 +226,10 @@ def inverse(arm, T, out):  # type: ignore[no-untyped-def]
     """
     cs = np.empty((6, 2))
     for n in range(T.shape[0]):
-        R = T[n, :3, :3]
-        wx, wy, wz = wrist_centre(R, T[n, :3, 3], arm.c4)
+        R = (
+            T[n, 0, 0], T[n, 0, 1], T[n, 0, 2], T[n, 1, 0], T[n, 1, 1], T[n, 1, 2], T[n, 2, 0], T[n, 2, 1], T[n, 2, 2],
+        )  # fmt: skip
+        wx, wy, wz = T[n, 0, 3] - arm.c4 * R[2], T[n, 1, 3] - arm.c4 * R[5], T[n, 2, 3] - arm.c4 * R[8]
         for posture in range(4):
             if solve_posture(arm, R, wx, wy, wz, posture, cs):
                 controller_angles(arm, cs, False, out[n, 2 * posture])
