@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from oracles import krl_reader
+from zerorev.evaluation import evaluate
 from zerorev.kinematics import inverse, tcp_pose, wrist_offset
 from zerorev.model.files import read_robot, read_tool
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Plan, Score, Verification
+from zerorev.model.plan import HolePlan, Plan, Verification
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
-from zerorev.motion import joint_path
 
 # thesis Appendix B with theory §6 and §7: target [mm], stroke [mm], spins [deg], axis values at the start [deg]
 PUBLISHED = {
@@ -48,22 +48,13 @@ def planned(kuka, drill):
         joints = None if near is None else tuple(np.deg2rad(near))
         branches = range(8) if joints is None else [_branch_near(robot, tool, hole, profile, np.array(joints))]
         for branch in branches:
-            path = joint_path(robot, tool, hole, profile, branch, near=joints)
-            if path.runs:
-                motion, offset = path.at_breakpoints(profile, branch), wrist_offset(robot, tool)
-                return HolePlan(hole, "evaluated", offset, motion, score_of(path), None, PASSED)
+            seen = evaluate(robot, tool, hole, profile, branch, Settings(near_joints=joints))
+            if seen.motion is not None:
+                offset = wrist_offset(robot, tool)
+                return HolePlan(hole, "evaluated", offset, seen.motion, seen.score, None, PASSED)
         pytest.fail(f"no branch runs {hole}")
 
     return planned
-
-
-def score_of(path):
-    """Reversals counted between the samples: the program only reports them."""
-    signs = np.sign(np.where(np.abs(steps := np.diff(path.joints, axis=0)) < 1e-12, 0, steps))
-    moving = [column[column != 0] for column in signs.T]
-    counts = tuple(int(np.count_nonzero(np.diff(column))) for column in moving)
-    zeros = np.zeros(6)
-    return Score(counts, (), float(np.abs(steps).sum()), zeros, zeros, zeros)
 
 
 def _branch_near(robot, tool, hole, profile, joints):

@@ -74,6 +74,14 @@ def test_an_error_finding_of_the_plan_about_one_hole_refuses_that_hole(published
     assert ";FOLD Hole 1 of 1: position 1" in export(plan, skip_failed=True).text
 
 
+def test_what_a_plan_says_of_its_check_is_not_taken_on_trust(published, plan_of, spoil):
+    hole = published(1)
+    altered = spoil(hole, score=spoil(hole.score, travel=hole.score.travel / 2))
+    assert altered.verified.passed
+    with pytest.raises(NotExportableError, match=r"did not pass the check: .*travel"):
+        export(plan_of(altered))
+
+
 def test_warnings_do_not_stop_the_export(published, plan_of, spoil):
     hole = spoil(published(1), findings=(Finding("warning", "threshold", "slow", "position 1"),))
     assert export(plan_of(hole)).text

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.program.waypoints import GREATEST_TURN, PASSING_BLEND, waypoints, with_blends
+from zerorev.program.waypoints import GREATEST_TURN, waypoints, with_blends
 
 
 def psi_deg(points):
@@ -64,7 +65,7 @@ def test_a_deeper_corner_says_so():
 
 def blends_mm(profile, lead_in, blend):
     points, corner = waypoints(profile, lead_in)
-    return [pytest.approx(point.blend * 1e3) for point in with_blends(points, corner, blend)]
+    return [pytest.approx(point.blend * 1e3) for point in with_blends(points, corner, Settings(blend=blend))]
 
 
 def test_every_inner_point_is_blended_and_the_ends_are_not():
@@ -78,5 +79,5 @@ def test_a_blend_is_clipped_to_half_the_shorter_neighbour():
 
 
 def test_an_exact_stop_at_the_corner_is_no_stop_elsewhere():
-    passing = PASSING_BLEND * 1e3
+    passing = Settings(blend=0.0).passing_blend * 1e3
     assert blends_mm(Profile.straight(0.05, 0.3, 0.0, -0.3), 5e-3, 0.0) == [0, passing, 0, 0]

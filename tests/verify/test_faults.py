@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from zerorev.model.job import Settings
 from zerorev.model.plan import Event
 from zerorev.model.profile import Profile
 from zerorev.verify import verify_hole
@@ -222,6 +223,17 @@ def test_a_blend_that_makes_a_joint_reverse(check, kuka, drill, build, random_ho
     profile = Profile.straight(0.03, *np.deg2rad([-32.94, 0.0, 21.13]))
     plan = build(kuka, drill, hole, profile, start)
     assert plan.score.reversals_per_joint[0] == 0
-    said(check(plan, blend=0.01), "with the corner blended A1 reverses 2 times", "0 without")
+    said(check(plan, blend=0.01), "in the blended corner, A1 reverses: 2 times in all", "0 without")
     assert check(plan, blend=0.0).reversals_per_joint == check(plan, blend=0.01).reversals_per_joint
     assert not any("blended A1" in failure for failure in check(plan, blend=0.0).failures)
+
+
+def test_the_blends_at_other_breakpoints_are_looked_at_too(check, kuka, drill, build, plan):
+    cut = Profile(*plan.motion.profile.at(np.array([0.0, 0.02, 0.05, 0.08, 0.1])))
+    five = build(kuka, drill, plan.hole, cut, plan.motion.joints[0])
+    assert check(five, blend=0.01).passed
+    assert [check(five, blend=blend).blend_samples for blend in (0.01, 0.0)] == [12_000, 8_000]
+    upper = kuka.limits.upper.copy()
+    upper[4] = five.motion.joints[3, 4] - 1e-3  # A5 rises all along
+    failures = verify_hole(replace(kuka, limits=replace(kuka.limits, upper=upper)), drill, Settings(), five).failures
+    assert any(failure.startswith("in the blend at breakpoint 4, A5") for failure in failures), failures

@@ -4,7 +4,7 @@ import numpy as np
 
 from zerorev.model.profile import Profile
 from zerorev.verify.measure import mean_rates, path_steps, rates, reversals, travel
-from zerorev.verify.path import Path, Track, blend, legs, with_blend
+from zerorev.verify.path import Path, Track, around, blend, legs, with_blend
 
 
 def made_up(columns):
@@ -66,7 +66,7 @@ def test_legs_are_even_and_hold_every_breakpoint_exactly():
 
 def test_the_blend_is_a_parabola_between_the_legs():
     profile = Profile.straight(0.05, 0.4, 0.0, -0.2)
-    path = blend(profile, 0.01, 1001)
+    path = blend(profile, profile.corner, 0.01, 1001)
     np.testing.assert_allclose([path.standoff[0], path.standoff[-1]], 0.01)
     np.testing.assert_allclose([path.psi[0], path.psi[-1]], [0.08, -0.04])
     np.testing.assert_allclose(path.standoff.min(), 0.005)  # radius / 2 short of the corner (theory §5)
@@ -77,17 +77,17 @@ def test_the_blend_is_a_parabola_between_the_legs():
 
 def test_the_blend_is_clipped_to_half_the_shorter_neighbour():
     profile = Profile([0.05, 0.004, 0.0, 0.05], [0.0, 0.4, 0.2, 0.0])
-    path = blend(profile, 0.01, 101)
+    path = blend(profile, profile.corner, 0.01, 101)
     np.testing.assert_allclose(path.standoff[[0, -1]], 0.002)
-    deeper = blend(Profile.straight(0.05, 0.0, 0.1, 0.0, corner=-0.001), 0.002, 101)
+    deeper = blend(Profile.straight(0.05, 0.0, 0.1, 0.0, corner=-0.001), 1, 0.002, 101)
     np.testing.assert_allclose([deeper.standoff[0], deeper.standoff.min()], [0.001, 0.0], atol=1e-15)
 
 
 def test_a_blended_track_leaves_the_legs_and_comes_back_to_them():
     profile = Profile.straight(0.05, 0.4, 0.0, -0.2)
-    path, curve = legs(profile, 1000), blend(profile, 0.01, 101)
+    path, curve = legs(profile, 1000), blend(profile, profile.corner, 0.01, 101)
     track, cut = (Track(p, np.tile(p.psi[:, None], 6)) for p in (path, curve))
-    whole, first, last = with_blend(track, cut)
+    whole, first, last = with_blend(track, cut, *around(path, profile.corner, curve))
     assert (np.diff(whole.path.standoff[: whole.path.corner + 1]) < 0).all()
     assert (np.diff(whole.path.standoff[whole.path.corner :]) > 0).all()
     assert np.abs(np.diff(whole.path.psi)).max() < 2e-3

@@ -76,6 +76,15 @@ class Settings:
             _check(len(self.near_joints) == 6, "near_joints", "six angles")
 
     @property
+    def passing_blend(self) -> float:
+        """Radius of the blend [m] at inner points other than the corner.
+
+        Where the job asks for an exact stop at the corner, it is 1 mm all the same: a stop within a leg would put every
+        joint at rest with the drill in the material.
+        """
+        return self.blend or 1e-3
+
+    @property
     def shortfall(self) -> float:
         """Depth lost to the blend [m]: as measured, or half the radius of a parabolic blend (theory §5)."""
         return self.blend / 2 if self.blend_shortfall is None else self.blend_shortfall

@@ -199,7 +199,7 @@ def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Findin
     assert hole.motion is not None  # _why_not has seen to it
     lead_in = find_lead_in(plan.robot, plan.tool, hole, plan.settings.lead_in)
     points, corner = waypoints(hole.motion.profile, lead_in.length)
-    points = with_blends(points, corner, plan.settings.blend)
+    points = with_blends(points, corner, plan.settings)
     T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)
     poses = [_tool_pose(T_part_base, hole, point) for point in points]
     moves = tuple(

@@ -7,16 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 
-__all__ = ["GREATEST_TURN", "PASSING_BLEND", "Waypoint", "waypoints", "with_blends"]
+__all__ = ["GREATEST_TURN", "Waypoint", "waypoints", "with_blends"]
 
 GREATEST_TURN = float(np.deg2rad(120.0))
 """Greatest turn of the tool in one move [rad]: at 180 deg the short way round is ambiguous (theory §5)."""
-
-PASSING_BLEND = 1e-3
-"""Blend [m] at inner points other than the corner where the job asks for an exact stop at the corner: a stop within a
-leg would put every joint at rest with the drill in the material."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +80,7 @@ def _split(start: Waypoint, end: Waypoint) -> list[Waypoint]:
     return [*between, end]
 
 
-def with_blends(points: tuple[Waypoint, ...], corner: int, blend: float) -> tuple[Waypoint, ...]:
+def with_blends(points: tuple[Waypoint, ...], corner: int, settings: Settings) -> tuple[Waypoint, ...]:
     """The points with a blend at every inner one, clipped to half the shorter neighbouring move.
 
     A controller clips a greater radius in just this way, without telling; written here, the depth lost is known.
@@ -91,11 +88,11 @@ def with_blends(points: tuple[Waypoint, ...], corner: int, blend: float) -> tupl
     Args:
         points: in order of motion; the first and the last stay exact stops.
         corner: index of the corner.
-        blend: radius that the job asks for at the corner [m]; 0 stops exactly there.
+        settings: the radii that the job asks for.
     """
     lengths = np.abs(np.diff([point.standoff for point in points]))
     radii = [
-        min(blend if i == corner else blend or PASSING_BLEND, lengths[i - 1] / 2, lengths[i] / 2)
+        min(settings.blend if i == corner else settings.passing_blend, lengths[i - 1] / 2, lengths[i] / 2)
         for i in range(1, len(points) - 1)
     ]
     inner = [replace(point, blend=float(radius)) for point, radius in zip(points[1:-1], radii, strict=True)]

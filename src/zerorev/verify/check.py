@@ -9,6 +9,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Verification
+from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import posture_of
@@ -21,7 +22,7 @@ from zerorev.verify.claims import (
     score_claimed,
 )
 from zerorev.verify.measure import reversals
-from zerorev.verify.path import Track, blend, follow, legs, residual, with_blend
+from zerorev.verify.path import Track, around, blend, follow, legs, residual, with_blend
 from zerorev.verify.sound import continuity, limit_distances, limits, on_the_axis, reach
 
 __all__ = ["verify_hole", "verify_plan"]
@@ -82,13 +83,16 @@ def verify_hole(
         *score_claimed(robot, score, track, turned),
     ]
     looked_at = [("", track)]
-    if settings.blend > 0:
-        curve = blend(motion.profile, settings.blend, blend_samples)
-        entry = track.joints[np.flatnonzero(asked.standoff[: asked.corner] > curve.standoff[0])[-1]]
-        cut, first, last = with_blend(track, Track(curve, follow(robot, tool, hole, curve, posture, entry)))
-        failures += blend_keeps(robot, turned, cut, reversals(cut))
+    for k, radius in _blends(motion.profile, settings):
+        at_corner = k == motion.profile.corner
+        where = "in the blended corner, " if at_corner else f"in the blend at breakpoint {k + 1}, "
+        curve = blend(motion.profile, k, radius, blend_samples)
+        before, behind = around(asked, k, curve)
+        joints = follow(robot, tool, hole, curve, posture, track.joints[before])
+        cut, first, last = with_blend(track, Track(curve, joints), before, behind)
+        failures += blend_keeps(robot, where, turned, cut, reversals(cut))
         # a sample of the legs on either side, so that the joints are also seen to be continuous into the blend
-        looked_at.append(("in the blended corner, ", cut.part(first - 1, last + 1)))
+        looked_at.append((where, cut.part(first - 1, last + 1)))
 
     figures = []
     for where, piece in looked_at:
@@ -106,7 +110,7 @@ def verify_hole(
     return Verification(
         passed=not failures,
         samples=asked.standoff.size,
-        blend_samples=blend_samples if settings.blend > 0 else 0,
+        blend_samples=blend_samples * (len(looked_at) - 1),
         reversals_per_joint=tuple(map(len, turned)),
         max_position_error=max(position_error),
         max_rotation_error=max(rotation_error),
@@ -114,6 +118,13 @@ def verify_hole(
         min_limit_distance=min(short_room),
         failures=tuple(failures),
     )
+
+
+def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:
+    """The inner breakpoints at which the motion does not stop, and the radius [m] of the blend at each."""
+    inner = range(1, profile.standoff.size - 1)
+    radii = [(k, settings.blend if k == profile.corner else settings.passing_blend) for k in inner]
+    return [(k, radius) for k, radius in radii if radius > 0]
 
 
 def _most(values: Array) -> float:

@@ -107,19 +107,20 @@ def reversals_claimed(robot: Robot, score: Score, track: Track, turned: Reversal
             yield f"{name} has {events[joint + 1]} reversals listed as events, the plan claims {claimed}"
 
 
-def blend_keeps(robot: Robot, turned: Reversals, cut: Track, turned_cut: Reversals) -> Iterator[str]:
-    """Blending the corner must not make a joint reverse more often.
+def blend_keeps(robot: Robot, where: str, turned: Reversals, cut: Track, turned_cut: Reversals) -> Iterator[str]:
+    """Blending a breakpoint must not make a joint reverse more often.
 
     Args:
         robot: the arm.
+        where: which blend, for a message.
         turned: reversals of both legs up to the corner.
-        cut: the motion with its corner blended.
+        cut: the motion with that breakpoint blended.
         turned_cut: reversals of that.
     """
     for name, sharp, blunt in zip(robot.joint_names, turned, turned_cut, strict=True):
         if len(blunt) > len(sharp):
             places = "; ".join(cut.path.place(i) for i in blunt[:3])
-            yield f"with the corner blended {name} reverses {_times(len(blunt))} ({places}), {len(sharp)} without"
+            yield f"{where}{name} reverses: {_times(len(blunt))} in all ({places}), {len(sharp)} without the blend"
 
 
 def score_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -> Iterator[str]:

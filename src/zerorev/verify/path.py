@@ -13,7 +13,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import Posture, skeleton, solve, with_turns
 
-__all__ = ["Path", "Track", "blend", "follow", "legs", "residual", "with_blend"]
+__all__ = ["Path", "Track", "around", "blend", "follow", "legs", "residual", "with_blend"]
 
 # a segment gets so many steps however short it is: a narrow kink must not hide between samples
 LEAST_STEPS = 16
@@ -76,48 +76,63 @@ def legs(profile: Profile, samples: int) -> Path:
     return Path(spread(profile.standoff), spread(profile.psi), knots, knots[int(np.argmin(profile.standoff))])
 
 
-def blend(profile: Profile, radius: float, samples: int) -> Path:
-    """The corner cut by a parabola (theory §5): a quadratic Bezier in (stand-off, psi).
+def blend(profile: Profile, k: int, radius: float, samples: int) -> Path:
+    """A breakpoint cut by a parabola (theory §5): a quadratic Bezier in (stand-off, psi).
 
-    It leaves the plunge `radius` before the corner and joins the retract `radius` behind it; the radius is clipped to
-    half the shorter of the two neighbouring segments. It turns back radius / 2 short of the corner.
+    It leaves one segment `radius` before the breakpoint and joins the next `radius` behind it; the radius is clipped to
+    half the shorter of the two. At the corner it turns back radius / 2 short.
 
     Args:
-        profile: spin along the path.
+        profile: spin along the path, n breakpoints.
+        k: which breakpoint, 1 to n - 2.
         radius: of the blend [m], above 0.
         samples: how many.
     """
-    k = int(np.argmin(profile.standoff))
-    corner, before, after = (np.array([profile.standoff[i], profile.psi[i]]) for i in (k, k - 1, k + 1))
-    radius = min(radius, (before - corner)[0] / 2, (after - corner)[0] / 2)
+    middle, before, after = (np.array([profile.standoff[i], profile.psi[i]]) for i in (k, k - 1, k + 1))
+    sides = [end - middle for end in (before, after)]
+    radius = min(radius, *(abs(side[0]) / 2 for side in sides))
     t = np.linspace(0.0, 1.0, samples)[:, None]
-    entry, leave = (corner + (end - corner) * (radius / (end - corner)[0]) for end in (before, after))
-    standoff, psi = ((1 - t) ** 2 * entry + 2 * t * (1 - t) * corner + t**2 * leave).T
-    return Path(standoff, psi, (), int(np.argmin(standoff)))
+    entry, leave = (middle + side * (radius / abs(side[0])) for side in sides)
+    standoff, psi = ((1 - t) ** 2 * entry + 2 * t * (1 - t) * middle + t**2 * leave).T
+    # on one leg the whole blend lies before or behind the corner
+    at_corner = k == int(np.argmin(profile.standoff))
+    corner = int(np.argmin(standoff)) if at_corner else (samples if sides[0][0] > 0 else -1)
+    return Path(standoff, psi, (), corner)
 
 
-def with_blend(track: Track, curve: Track) -> tuple[Track, int, int]:
-    """A track whose corner is replaced by a blend.
+def around(path: Path, k: int, curve: Path) -> tuple[int, int]:
+    """The samples of the legs between which a blend at breakpoint k lies: the last before it, the first behind it."""
+    distance = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path.standoff)))])
+    knot = path.knots[k]
+    radius = abs(curve.standoff[0] - path.standoff[knot]) + 1e-12  # [m]: a sample at the very end is the blend's own
+    before = np.flatnonzero(distance < distance[knot] - radius)[-1]
+    behind = np.flatnonzero(distance > distance[knot] + radius)[0]
+    return int(before), int(behind)
+
+
+def with_blend(track: Track, curve: Track, before: int, behind: int) -> tuple[Track, int, int]:
+    """A track in which the samples between two are replaced by a blend.
 
     Args:
         track: both legs, N samples.
         curve: the blend, M samples.
+        before: the last sample of the legs that is kept before the blend.
+        behind: the first that is kept behind it.
 
     Returns:
         The blended track, and the indices in it of the blend's first and last sample.
     """
-    path = track.path
-    outside, index = path.standoff > curve.path.standoff[0], np.arange(path.standoff.size)
-    into, out = outside & (index < path.corner), outside & (index > path.corner)
 
     def join(legs: Array, cut: Array) -> Array:
-        return np.concatenate([legs[into], cut, legs[out]])
+        return np.concatenate([legs[: before + 1], cut, legs[behind:]])
 
-    first = int(into.sum())
-    whole = Path(
-        join(path.standoff, curve.path.standoff), join(path.psi, curve.path.psi), (), first + curve.path.corner
-    )
-    return Track(whole, join(track.joints, curve.joints)), first, first + curve.path.standoff.size - 1
+    added, corner = curve.path.standoff.size, track.path.corner
+    if before < corner < behind:
+        corner = before + 1 + curve.path.corner
+    elif corner >= behind:
+        corner += added - (behind - before - 1)
+    whole = Path(join(track.path.standoff, curve.path.standoff), join(track.path.psi, curve.path.psi), (), corner)
+    return Track(whole, join(track.joints, curve.joints)), before + 1, before + added
 
 
 def follow(robot: Robot, tool: Tool, hole: Hole, path: Path, posture: Posture, start: Array) -> Array:
