@@ -12,6 +12,7 @@ import numpy as np
 
 from zerorev import kinematics
 from zerorev.evaluation import evaluate
+from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 
 FULL_TURN = 2 * np.pi
@@ -93,7 +94,7 @@ def turns_fit(low, high, limits):
 
 
 def pairs(robot, legs, k, branch, weights):
-    """Weighted reversals and travel of all pairs (plunge, retract) at one spin, shape (L, L) each; inf if not to run."""
+    """Weighted reversals and travel of all pairs (plunge, retract) at one spin, shape (L, L); inf if not to run."""
     signature, inside = legs.signature[k, :, branch], legs.inside[k, :, branch]
     at_target = (signature[:, None] * signature[None] > 0).astype(int)
     reversals = at_target + inside[:, None] + inside[None]
@@ -156,3 +157,56 @@ def best_on_grid(robot, tool, hole, *, spins=40, weights=(1.0,) * 6, bound=None,
         if best is None or plan.key < best.key:
             best = plan
     return best
+
+
+def random_hole(robot, seed):
+    """A hole somewhere around a robot, oblique or along +X, of a depth that often asks for a reversal."""
+    rng = np.random.default_rng(seed)
+    reach = robot.arm.c2 + np.hypot(robot.arm.c3, robot.arm.a2)
+    while True:
+        up = robot.arm.c1 + rng.uniform(-0.6, 0.7) * reach
+        target = np.array([rng.uniform(0.1, 0.9) * reach, rng.uniform(-0.7, 0.7) * reach, up])
+        direction = rng.normal(size=3)
+        direction /= np.linalg.norm(direction)
+        if rng.random() < 0.5:
+            direction = np.array([1.0, 0.0, 0.0]) + 0.5 * direction
+        if abs(direction[1]) < 0.95 * np.linalg.norm(direction):
+            depth = rng.choice([10, 20, 30, 50, 80, 120, 180]) / 1e3 * reach / 0.7
+            return Hole(f"hole {seed}", target, direction, depth)
+
+
+def best_without_reversal(robot, tool, hole, value, *, spins=40, min_rate=NIL):
+    """The least `value` over the grid's plans without reversal that keep the motion threshold at every node, or inf.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: what is drilled.
+        value: of (twist of one leg, twist of the other, least rate), arrays of shape (L, L).
+        spins: at the target, in one turn.
+        min_rate: motion threshold [rad/m].
+    """
+    step = FULL_TURN / spins
+    twist = np.arange(-spins + 1, spins) * step
+    legs = trace_legs(robot, tool, hole, np.arange(spins) * step - np.pi, twist)
+    slowest = legs.least.min(axis=-1)
+    best = np.inf
+    for k in range(spins):
+        for branch in range(8):
+            cost, _ = pairs(robot, legs, k, branch, np.ones(6))
+            least = np.minimum(slowest[k, :, None, branch], slowest[k, None, :, branch])
+            values = value(twist[:, None], twist[None], least)
+            best = min(best, np.where((cost == 0) & (least >= min_rate), values, np.inf).min())
+    return best
+
+
+def least_rate(robot, tool, hole, branch, profile, nodes=400):
+    """Slowest motion of any joint of a motion of two straight legs [rad/m]; below 0 where one reverses."""
+    standoff = np.linspace(0.0, hole.depth, nodes)
+    slopes = profile.twist_rate
+    rates = []
+    for slope, sense in zip(slopes, (-1.0, 1.0), strict=True):
+        theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, standoff, profile.psi[1] + slope * standoff)
+        rates.append(sense * (theta_s + slope * theta_psi)[:, branch])
+    rates = np.concatenate(rates)
+    return float((rates * np.sign(rates.sum(axis=0))).min())

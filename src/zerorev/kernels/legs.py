@@ -16,7 +16,8 @@ from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
 
 # rows of a traced leg, one column a joint
-LEAST_RATE, GREATEST_RATE, LEAST_ANGLE, GREATEST_ANGLE, END_ANGLE = range(5)
+LEAST_RATE, GREATEST_RATE, LEAST_ANGLE, GREATEST_ANGLE, END_ANGLE, MOVED, TURNS, TARGET_RATE = range(8)
+ROWS = 8
 # columns of what a search over slopes or pairs returns
 VALUE, SLOPE_ABOVE, SLOPE_BELOW, MARGIN = range(4)
 # what makes one leg better than another
@@ -26,8 +27,11 @@ NIL = np.deg2rad(1e-6)  # [rad/m] 1e-9 deg/mm: below it a joint does not move
 GEOMETRIC_SLOPES = 16
 SLOPES_BETWEEN = 4
 MAX_SLOPES = 1 + GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN
+EVEN_SLOPES = 48
+MAX_FAN = 7 + 2 * GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN + EVEN_SLOPES
 ROOT_STEPS = 24
 GOLDEN_STEPS = 20
+COMPASS_STEPS = 40
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
@@ -43,8 +47,8 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, leg):  # type: ign
         slope: twist rate u [rad/m].
         depth: length of the leg [m].
         nodes: how many points are looked at, both ends among them.
-        leg: out, shape (5, 6): least and greatest outward rate, least and greatest angle relative to the target, and
-            the angle at the outer end relative to the target.
+        leg: out, shape (ROWS, 6): least and greatest outward rate; least and greatest angle, and the one at the outer
+            end, relative to the target; angle moved; how often the joint turns round; outward rate at the target.
 
     Returns:
         whether all of the leg can be reached.
@@ -52,6 +56,7 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, leg):  # type: ign
     cs = np.empty((6, 2))
     theta_s, theta_psi = np.empty(6), np.empty(6)
     earlier, before, first, last = np.zeros(6), np.zeros(6), np.empty(6), np.empty(6)
+    direction = np.zeros(6)
     five = flip_sign(arm, branch)
     step = depth / (nodes - 1)
     for n in range(nodes):
@@ -67,18 +72,31 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, leg):  # type: ign
             if n == 0:
                 leg[LEAST_RATE, i] = leg[GREATEST_RATE, i] = rate
                 leg[LEAST_ANGLE:, i] = 0.0
+                leg[TARGET_RATE, i] = rate
             else:
                 leg[LEAST_RATE, i] = min(leg[LEAST_RATE, i], rate)
                 leg[GREATEST_RATE, i] = max(leg[GREATEST_RATE, i], rate)
-                if n > 1 and (rate - before[i]) * (before[i] - earlier[i]) < 0.0:
+                tilt, bend = rate - earlier[i], rate - 2.0 * before[i] + earlier[i]
+                reach = abs(bend)
+                if (n == 2 and tilt * bend > 0.0) or (n == nodes - 1 and tilt * bend < 0.0):
+                    reach *= 2.0  # an end of the leg has no nodes on its other side
+                if n > 1 and abs(tilt) < reach:
                     # an extreme lies between the nodes: take it from the parabola through three of them
-                    extreme = before[i] - (rate - earlier[i]) ** 2 / (8.0 * (rate - 2.0 * before[i] + earlier[i]))
+                    extreme = before[i] - tilt * tilt / (8.0 * bend)
                     leg[LEAST_RATE, i] = min(leg[LEAST_RATE, i], extreme)
                     leg[GREATEST_RATE, i] = max(leg[GREATEST_RATE, i], extreme)
-                leg[END_ANGLE, i] += 0.5 * step * (before[i] + rate)
+                    if extreme * before[i] < 0.0 and rate * before[i] > 0.0 and earlier[i] * before[i] > 0.0:
+                        leg[TURNS, i] += 2.0
+                moved = 0.5 * step * (before[i] + rate)
+                leg[MOVED, i] += abs(moved)
+                leg[END_ANGLE, i] += moved
                 leg[LEAST_ANGLE, i] = min(leg[LEAST_ANGLE, i], leg[END_ANGLE, i])
                 leg[GREATEST_ANGLE, i] = max(leg[GREATEST_ANGLE, i], leg[END_ANGLE, i])
             earlier[i], before[i] = before[i], rate
+            if abs(rate) > NIL:
+                if rate * direction[i] < 0.0:
+                    leg[TURNS, i] += 1.0
+                direction[i] = 1.0 if rate > 0.0 else -1.0
         if n == 0:
             controller_angles(arm, cs, branch % 2 == 1, first)
     # the outer end is known exactly up to whole turns, and the sum over the nodes knows those
@@ -93,11 +111,21 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, leg):  # type: ign
 
 
 @kernel
+def joint_travel(leg, i):  # type: ignore[no-untyped-def]
+    """Angle moved by a joint on a traced leg [rad]: exact where it does not turn round, from its extremes if once."""
+    if leg[TURNS, i] == 0.0:
+        return abs(leg[END_ANGLE, i])
+    if leg[TURNS, i] == 1.0:
+        return 2.0 * (leg[GREATEST_ANGLE, i] - leg[LEAST_ANGLE, i]) - abs(leg[END_ANGLE, i])
+    return leg[MOVED, i]
+
+
+@kernel
 def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-untyped-def]
     """Margin, slack to the limits, and travel of a traced leg.
 
     Args:
-        leg: from `trace_leg`, shape (5, 6).
+        leg: from `trace_leg`, shape (ROWS, 6).
         sense: wanted sign of each joint's outward rate, shape (6,).
         keep: whether a joint must keep its direction, shape (6,); the others may turn at the target, but not within a
             leg unless `asked.turn_inside`.
@@ -108,13 +136,13 @@ def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-unt
     Returns:
         margin: least rate in the wanted sense over the joints to keep [rad/m], by the rule asked for.
         slack: least distance to a limit [rad].
-        travel: sum of the joints' angles moved, as far as the leg is monotone [rad].
+        travel: sum of the joints' angles moved [rad].
     """
     margin, slack, travel = np.inf, np.inf, 0.0
     for i in range(6):
         least, greatest = leg[LEAST_RATE, i], leg[GREATEST_RATE, i]
         end = leg[END_ANGLE, i]
-        travel += 2.0 * (leg[GREATEST_ANGLE, i] - leg[LEAST_ANGLE, i]) - abs(end)
+        travel += joint_travel(leg, i)
         slack = min(slack, at_target[i] + leg[LEAST_ANGLE, i] - asked.lower[i])
         slack = min(slack, asked.upper[i] - at_target[i] - leg[GREATEST_ANGLE, i])
         if least >= -NIL and greatest <= NIL:
@@ -204,7 +232,7 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, best):
         excess: by how much it does [rad/m, or rad at a limit]; negative where it does not, -inf out of reach.
         margin: see `judge_leg`; -inf where the leg cannot be run.
     """
-    leg = np.empty((5, 6))
+    leg = np.empty((ROWS, 6))
     if not trace_leg(arm, plane, branch, psi_t, slope, asked.depth, nodes, leg):
         return np.inf, -np.inf, -np.inf
     sense, keep, at_target = held
@@ -251,9 +279,7 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, b
     best[:] = np.inf, np.nan, -np.inf
     peak, peak_margin = -1, -np.inf
     for j in range(count):
-        costs[j], excesses[j], margin = try_slope(
-            arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, best
-        )
+        costs[j], excesses[j], margin = try_slope(arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, best)
         if margin > peak_margin:
             peak, peak_margin = j, margin
     if peak < 0:
@@ -273,18 +299,27 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, b
             )
         return
 
+    around, at_around = np.empty(2), np.empty(2)
     for j in range(count):
         if costs[j] == np.inf:
             continue
-        for k in (j - 1, j + 1):
-            if 0 <= k < count and costs[k] == np.inf:
-                _interval_end(
-                    arm, plane, branch, psi_t, slopes[j], excesses[j], slopes[k], excesses[k],
+        for k in range(2):
+            other = j - 1 + 2 * k
+            if not 0 <= other < count:
+                around[k], at_around[k] = slopes[j], -np.inf
+            elif costs[other] < np.inf:
+                around[k], at_around[k] = slopes[other], costs[other]
+            else:
+                around[k], at_around[k] = _interval_end(
+                    arm, plane, branch, psi_t, slopes[j], excesses[j], slopes[other], excesses[other],
                     held, asked, mode, nodes, best,
                 )  # fmt: skip
-        if 0 < j < count - 1 and costs[j] <= min(costs[j - 1], costs[j + 1]) < np.inf:
-            a, b = slopes[j - 1], slopes[j + 1]
-            _golden(arm, plane, branch, psi_t, a, b, False, held, asked, mode, nodes, best)
+                # from the end inwards the cost may still fall
+                probe = around[k] + 0.1 * (slopes[j] - around[k])
+                if try_slope(arm, plane, branch, psi_t, probe, held, asked, mode, nodes, best)[0] < at_around[k]:
+                    _golden(arm, plane, branch, psi_t, around[k], slopes[j], False, held, asked, mode, nodes, best)
+        if costs[j] <= min(at_around[0], at_around[1]) < np.inf:
+            _golden(arm, plane, branch, psi_t, around[0], around[1], False, held, asked, mode, nodes, best)
 
 
 @kernel
@@ -306,18 +341,23 @@ def _golden(arm, plane, branch, psi_t, a, b, climb, held, asked, mode, nodes, be
 
 @kernel
 def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
-    """Locate where a slope just stops doing: regula falsi (Illinois), bisection where one side cannot be run."""
+    """Locate where a slope just stops doing: regula falsi (Illinois), bisection where one side cannot be run.
+
+    Returns:
+        the last slope that will do, and its cost; inf where that is `inside` itself.
+    """
     kept = 0
+    at_end = np.inf
     for _ in range(ROOT_STEPS):
         if abs(outside - inside) < 1e-10 * (1.0 + abs(inside)):
-            return
+            break
         share = 0.5
         if f_out > -np.inf and f_in > 0.0:
             share = min(max(f_in / (f_in - f_out), 1e-3), 1.0 - 1e-3)
         middle = inside + share * (outside - inside)
         cost, excess, _margin = try_slope(arm, plane, branch, psi_t, middle, held, asked, mode, nodes, best)
         if cost < np.inf:
-            inside, f_in = middle, excess
+            inside, f_in, at_end = middle, excess, cost
             if kept > 0:
                 f_out *= 0.5
             kept = 1
@@ -326,6 +366,7 @@ def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held,
             if kept < 0:
                 f_in *= 0.5
             kept = -1
+    return inside, at_end
 
 
 @kernel
@@ -387,7 +428,7 @@ def best_pair(arm, plane, branch, psi_t, keep, asked, unlimited, mode, nodes, ou
         out[:] = np.inf, np.nan, np.nan, -np.inf
         return
     if out[VALUE] < np.inf:
-        legs = np.empty((2, 5, 6))
+        legs = np.empty((2, ROWS, 6))
         trace_leg(arm, plane, branch, psi_t, out[SLOPE_ABOVE], asked.depth, nodes, legs[0])
         trace_leg(arm, plane, branch, psi_t, out[SLOPE_BELOW], asked.depth, nodes, legs[1])
         fits = True
@@ -437,97 +478,348 @@ def _pair_within(arm, plane, branch, psi_t, at_target, sense, kappa, keep, asked
 
 
 @kernel
-def scan(arm, plane, psi, keep, asked, nodes, branches, out):  # type: ignore[no-untyped-def]
-    """A coarse look along the target line: what `best_pair` would find from the candidate slopes alone.
+def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-untyped-def]
+    """Slopes of the legs that are followed out of one point of the target line, whatever joints are to be kept.
 
-    The two wrist flips of a posture share their legs, so each leg is followed once for both.
+    Args:
+        kappa: critical rates at the target [rad/m], shape (6,).
+        between: whether slopes between the critical rates are wanted, too.
+        psi_t: spin at the target [rad].
+        asked: `Asked`, for the steepest slope and the bound on the spin.
+        out: out, shape (MAX_FAN,): rising slopes.
+        critical: out, shape (MAX_FAN,): whether a slope is a critical rate.
+
+    Returns:
+        how many slopes were written.
+    """
+    low, high = -asked.steepest, asked.steepest
+    if asked.psi_bound > 0.0:
+        low = max(low, (-asked.psi_bound - psi_t) / asked.depth)
+        high = min(high, (asked.psi_bound - psi_t) / asked.depth)
+    anchors = np.empty(6)
+    pieces = 0
+    for i in range(6):
+        if low < kappa[i] < high:
+            anchors[pieces] = kappa[i]
+            pieces += 1
+    count = 0
+    if pieces == 0:
+        anchors[0] = min(max(0.0, low), high)
+        pieces = 1
+    anchors = np.sort(anchors[:pieces])
+    marked = np.zeros(MAX_FAN)
+    for p in range(pieces):
+        if p == 0 or between or p == pieces - 1:
+            out[count], marked[count] = anchors[p], 1.0
+            count += 1
+        if between and p < pieces - 1:
+            for j in range(SLOPES_BETWEEN):
+                out[count] = anchors[p] + (anchors[p + 1] - anchors[p]) * (j + 0.5) / SLOPES_BETWEEN
+                count += 1
+    for j in range(GEOMETRIC_SLOPES):
+        share = 1e-4 ** (1.0 - j / (GEOMETRIC_SLOPES - 1.0))
+        out[count] = anchors[0] - (anchors[0] - low) * share
+        out[count + 1] = anchors[pieces - 1] + (high - anchors[pieces - 1]) * share
+        count += 2
+    if between:
+        for j in range(EVEN_SLOPES):
+            out[count] = low + (high - low) * (j + 0.5) / EVEN_SLOPES
+            count += 1
+        if low < 0.0 < high:  # the spin held
+            out[count] = 0.0
+            count += 1
+    order = np.argsort(out[:count])
+    out[:count] = out[:count][order]
+    for j in range(count):
+        critical[j] = marked[order[j]] > 0.0
+    return count
+
+
+@kernel
+def follow(arm, plane, psi, between, asked, nodes, branches, fan):  # type: ignore[no-untyped-def]
+    """Follow a fan of legs out of every spin of a grid, once for both wrist flips of a posture and for any `keep`.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
-        keep: whether a joint must keep its direction, shape (6,).
+        between: see `fan_slopes`.
         asked: `Asked`.
         nodes: points on a leg.
         branches: whether to look at a branch, shape (8,).
-        out: out, shape (8, K, 2): least travel over pairs that keep the margin (inf where none does), and the greatest
-            margin of a pair (-inf where none can be run).
+        fan: out, `Fan`.
     """
     cs = np.empty((6, 2))
-    theta_s, theta_psi = np.empty(6), np.empty(6)
-    kappa, sense = np.empty(6), np.empty(6)
-    principal, at_target = np.empty((2, 6)), np.empty(6)
-    flip_sense = np.empty(6)
-    legs = np.empty((2, MAX_SLOPES, 5, 6))
-    reached = np.zeros((2, MAX_SLOPES), dtype=np.bool_)
-    slopes = np.empty((2, MAX_SLOPES))
-    counts = np.zeros(2, dtype=np.int64)
-    best = np.empty((2, 2))
-    out[:, :, 0] = np.inf
-    out[:, :, 1] = -np.inf
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
+    fan.counts[:] = 0
+    fan.fits[:] = False
     for posture in range(4):
         if not (branches[2 * posture] or branches[2 * posture + 1]):
             continue
         for n in range(psi.shape[0]):
             if not twist_field(arm, plane, 0.0, psi[n], posture, cs, theta_s, theta_psi) or np.isnan(theta_psi[0]):
                 continue
-            controller_angles(arm, cs, False, principal[0])
-            controller_angles(arm, cs, True, principal[1])
+            slopes = fan.slopes[posture, n]
             for i in range(6):
-                kappa[i] = -theta_s[i] / theta_psi[i]
-                sense[i] = 1.0 if theta_psi[i] > 0.0 else -1.0
-            for k in range(2):
-                counts[k] = slope_candidates(kappa, keep, 1.0 - 2.0 * k, psi[n], asked, slopes[k])
-                for j in range(counts[k]):
-                    reached[k, j] = trace_leg(
-                        arm, plane, 2 * posture, psi[n], slopes[k, j], asked.depth, nodes, legs[k, j]
-                    )
-            for flip in range(2):
-                branch = 2 * posture + flip
-                if not branches[branch]:
+                fan.kappa[posture, n, i] = -theta_s[i] / theta_psi[i]
+                fan.sense[posture, n, i] = 1.0 if theta_psi[i] > 0.0 else -1.0
+            fan.sense[posture, n, 4] *= flip_sign(arm, 2 * posture)
+            count = fan_slopes(fan.kappa[posture, n], between, psi[n], asked, slopes, fan.critical[posture, n])
+            fan.counts[posture, n] = count
+            for j in range(count):
+                leg = fan.legs[posture, n, j]
+                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], asked.depth, nodes, leg):
                     continue
-                five = 1.0 if flip == 0 else -1.0  # the legs were followed on the unflipped branch
-                for choice in range(turn_choices(principal[flip], asked)):
-                    take_turns(principal[flip], asked, choice, at_target)
-                    for k in range(2):
-                        side = 1.0 - 2.0 * k
-                        for i in range(6):
-                            flip_sense[i] = side * sense[i]
-                        flip_sense[4] *= flip_sign(arm, 2 * posture)
-                        best[k, 0], best[k, 1] = np.inf, -np.inf
-                        near_margin, near_travel = -np.inf, np.inf
-                        for j in range(counts[k]):
-                            if not reached[k, j]:
-                                near_margin = -np.inf
-                                continue
-                            margin, slack, travel = _judge_flipped(
-                                legs[k, j], five, flip_sense, keep, at_target, asked
-                            )
-                            if slack < 0.0:
-                                near_margin = -np.inf
-                                continue
-                            best[k, 1] = max(best[k, 1], margin)
-                            if margin >= asked.min_rate:
-                                # the end of the interval lies between this candidate and the one before
-                                if -np.inf < near_margin < asked.min_rate:
-                                    share = (margin - asked.min_rate) / (margin - near_margin)
-                                    best[k, 0] = min(best[k, 0], travel + share * (near_travel - travel))
-                                best[k, 0] = min(best[k, 0], travel)
-                            near_margin, near_travel = margin, travel
-                    travel = best[0, 0] + best[1, 0]
-                    out[branch, n, 0] = min(out[branch, n, 0], travel)
-                    out[branch, n, 1] = max(out[branch, n, 1], min(best[0, 1], best[1, 1]))
+                for flip in range(2):
+                    if branches[2 * posture + flip]:
+                        controller_angles(arm, cs, flip == 1, principal)
+                        fan.fits[posture, n, j, flip] = turns_fit(leg, leg, flip == 1, principal, asked)
 
 
 @kernel
-def _judge_flipped(leg, five, sense, keep, at_target, asked):  # type: ignore[no-untyped-def]
-    """`judge_leg` of a leg followed on the other wrist flip, whose joint 5 moves the other way where five is -1."""
-    if five > 0.0:
-        return judge_leg(leg, sense, keep, at_target, asked.depth, asked)
-    turned = leg.copy()
-    mirrored = sense.copy()
-    mirrored[4] = -sense[4]
-    turned[LEAST_RATE, 4], turned[GREATEST_RATE, 4] = -leg[GREATEST_RATE, 4], -leg[LEAST_RATE, 4]
-    turned[LEAST_ANGLE, 4], turned[GREATEST_ANGLE, 4] = -leg[GREATEST_ANGLE, 4], -leg[LEAST_ANGLE, 4]
-    turned[END_ANGLE, 4] = -leg[END_ANGLE, 4]
-    return judge_leg(turned, mirrored, keep, at_target, asked.depth, asked)
+def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
+    """Whether some turns bring both of two legs within the limits.
+
+    Args:
+        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
+        b: see a.
+        flipped: whether the legs were followed on the other wrist flip, whose joint 5 moves the other way.
+        principal: angles at the target within (-pi, pi], shape (6,).
+        asked: `Asked`.
+    """
+    for i in range(6):
+        low, high = min(a[LEAST_ANGLE, i], b[LEAST_ANGLE, i]), max(a[GREATEST_ANGLE, i], b[GREATEST_ANGLE, i])
+        if flipped and i == 4:
+            low, high = -high, -low
+        first = np.ceil((asked.lower[i] - principal[i] - low) / (2.0 * np.pi))
+        if not principal[i] + high + 2.0 * np.pi * first <= asked.upper[i]:
+            return False
+    return True
+
+
+@kernel
+def look(fan, keep, asked, out):  # type: ignore[no-untyped-def]
+    """A coarse look along the target line: what `best_pair` would find from the legs of the fan alone.
+
+    Args:
+        fan: `Fan`, from `follow`.
+        keep: whether a joint must keep its direction, shape (6,).
+        asked: `Asked`.
+        out: out, shape (8, K, 2): least travel over pairs that keep the margin (inf where none does), and the greatest
+            margin of a pair (-inf where none can be run).
+    """
+    sense, anywhere = np.empty(6), np.zeros(6)
+    best = np.empty((2, 2, 2))  # flip; side; least travel, greatest margin
+    near = np.empty((2, 2))  # flip; margin and travel of the candidate before
+    out[:, :, 0] = np.inf
+    out[:, :, 1] = -np.inf
+    for posture in range(4):
+        for n in range(fan.counts.shape[1]):
+            count = fan.counts[posture, n]
+            if count == 0:
+                continue
+            kappa = fan.kappa[posture, n]
+            best[:, :, 0] = np.inf
+            best[:, :, 1] = -np.inf
+            for k in range(2):
+                side = 1.0 - 2.0 * k
+                nearest = -np.inf
+                for i in range(6):
+                    sense[i] = side * fan.sense[posture, n, i]
+                    if keep[i] and np.isfinite(kappa[i]):
+                        nearest = max(nearest, side * kappa[i])
+                if nearest == -np.inf:
+                    nearest = 0.0
+                near[:, 0] = -np.inf
+                for m in range(count):
+                    j = m if k == 0 else count - 1 - m  # away from the critical rates
+                    if side * fan.slopes[posture, n, j] < nearest:
+                        continue
+                    fits = fan.fits[posture, n, j]
+                    if not (fits[0] or fits[1]):
+                        near[:, 0] = -np.inf
+                        continue
+                    margin, _slack, travel = judge_leg(
+                        fan.legs[posture, n, j], sense, keep, anywhere, asked.depth, asked
+                    )
+                    for flip in range(2):
+                        if not fits[flip]:
+                            near[flip, 0] = -np.inf
+                            continue
+                        best[flip, k, 1] = max(best[flip, k, 1], margin)
+                        if margin >= asked.min_rate:
+                            # the end of the interval lies between this candidate and the one before
+                            if -np.inf < near[flip, 0] < asked.min_rate:
+                                share = (margin - asked.min_rate) / (margin - near[flip, 0])
+                                end = travel + share * (near[flip, 1] - travel)
+                                best[flip, k, 0] = min(best[flip, k, 0], end)
+                            best[flip, k, 0] = min(best[flip, k, 0], travel)
+                        near[flip, 0], near[flip, 1] = margin, travel
+            for flip in range(2):
+                out[2 * posture + flip, n, 0] = best[flip, 0, 0] + best[flip, 1, 0]
+                out[2 * posture + flip, n, 1] = min(best[flip, 0, 1], best[flip, 1, 1])
+
+
+@kernel
+def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no-untyped-def]
+    """What two legs out of the same point are worth together, limits aside: each figure the less the better.
+
+    Args:
+        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
+        b: see a.
+        slope_a: twist rates [rad/m]; slope_b the other.
+        slope_b: see slope_a.
+        weights: what a reversal of each joint costs, shape (6,).
+        asked: `Asked`.
+        mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
+
+    Returns:
+        cost: weighted count of reversals.
+        lack: by how much the slowest joint that does not reverse falls short of the threshold [rad/m].
+        value: what is to be least.
+    """
+    cost, margin, travel = 0.0, np.inf, 0.0
+    for i in range(6):
+        turns = a[TURNS, i] + b[TURNS, i]
+        at_a, at_b = a[TARGET_RATE, i], b[TARGET_RATE, i]
+        if abs(at_a) > NIL and abs(at_b) > NIL and at_a * at_b > 0.0:
+            turns += 1.0
+        cost += weights[i] * turns
+        travel += joint_travel(a, i) + joint_travel(b, i)
+        moves = False
+        slowest = np.inf
+        for k in range(2):
+            leg = a if k == 0 else b
+            if leg[LEAST_RATE, i] < -NIL or leg[GREATEST_RATE, i] > NIL:
+                moves = True
+                if asked.mean_rule:
+                    slowest = min(slowest, abs(leg[END_ANGLE, i]) / asked.depth)
+                else:
+                    slowest = min(slowest, max(leg[LEAST_RATE, i], -leg[GREATEST_RATE, i]))
+        if turns == 0.0 and moves:
+            margin = min(margin, slowest)
+    lack = max(0.0, asked.min_rate - margin)
+    if mode == GREATEST_MARGIN:
+        return cost, lack, -margin
+    if mode == PLUNGE_ROTATION:
+        return cost, lack, min(abs(slope_a), abs(slope_b)) * asked.depth
+    return cost, lack, travel
+
+
+@kernel
+def is_better(cost, lack, value, than):  # type: ignore[no-untyped-def]
+    """Whether fewer reversals, else less lack of motion, else a lower value; `than` holds those three."""
+    if abs(cost - than[0]) > 1e-9:
+        return cost < than[0]
+    if abs(lack - than[1]) > 1e-12:
+        return lack < than[1]
+    return value < than[2]
+
+
+@kernel
+def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: ignore[no-untyped-def]
+    """The best pair of legs of the fan at every spin, whatever reverses (theory §3).
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        psi: spins at the target [rad], shape (K,).
+        fan: `Fan`, from `follow` with slopes between the critical rates.
+        weights: see `judge_pair`.
+        asked: `Asked`.
+        mode: see `judge_pair`.
+        branches: whether to look at a branch, shape (8,).
+        out: out, shape (8, K, 5): cost, lack and value of the best pair, inf where none can be run, and its slopes.
+    """
+    cs = np.empty((6, 2))
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty((2, 6))
+    inside = np.empty(MAX_FAN)
+    out[:] = np.inf
+    for posture in range(4):
+        for n in range(psi.shape[0]):
+            count = fan.counts[posture, n]
+            if count == 0:
+                continue
+            twist_field(arm, plane, 0.0, psi[n], posture, cs, theta_s, theta_psi)
+            controller_angles(arm, cs, False, principal[0])
+            controller_angles(arm, cs, True, principal[1])
+            legs, fits = fan.legs[posture, n], fan.fits[posture, n]
+            for j in range(count):
+                inside[j] = np.inf  # at a critical rate the count is a matter of rounding
+                if not fan.critical[posture, n, j] and (fits[j, 0] or fits[j, 1]):
+                    inside[j] = 0.0
+                    for i in range(6):
+                        inside[j] += weights[i] * legs[j, TURNS, i]
+            for x in range(count):
+                for y in range(x + 1):
+                    least = inside[x] + inside[y]
+                    if least == np.inf or least > max(out[2 * posture, n, 0], out[2 * posture + 1, n, 0]) + 1e-9:
+                        continue
+                    a, b = fan.slopes[posture, n, x], fan.slopes[posture, n, y]
+                    cost, lack, value = judge_pair(legs[x], legs[y], a, b, weights, asked, mode)
+                    for flip in range(2):
+                        best = out[2 * posture + flip, n]
+                        if (
+                            branches[2 * posture + flip] and fits[x, flip] and fits[y, flip]
+                            and is_better(cost, lack, value, best)
+                            and turns_fit(legs[x], legs[y], flip == 1, principal[flip], asked)
+                        ):  # fmt: skip
+                            best[0], best[1], best[2], best[3], best[4] = cost, lack, value, a, b
+
+
+@kernel
+def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  # type: ignore[no-untyped-def]
+    """`judge_pair` of (psi_t, slope, slope), inf where it cannot be run; `legs` is room for two legs."""
+    psi_t, a, b = point
+    if asked.psi_bound > 0.0 and (
+        max(abs(psi_t), abs(psi_t + a * asked.depth), abs(psi_t + b * asked.depth)) > asked.psi_bound
+    ):
+        return np.inf, np.inf, np.inf
+    if max(abs(a), abs(b)) > asked.steepest:
+        return np.inf, np.inf, np.inf
+    cs = np.empty((6, 2))
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
+    if not twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi):
+        return np.inf, np.inf, np.inf
+    controller_angles(arm, cs, branch % 2 == 1, principal)
+    if not (
+        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, legs[0])
+        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, legs[1])
+        and turns_fit(legs[0], legs[1], False, principal, asked)
+    ):
+        return np.inf, np.inf, np.inf
+    return judge_pair(legs[0], legs[1], a, b, weights, asked, mode)
+
+
+@kernel
+def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
+    """Compass search from a pair of legs: any of its three figures may move, alone or together, by ever less.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        point: in and out, shape (3,): psi_t [rad] and the two slopes [rad/m].
+        step: of psi_t, to begin with [rad].
+        weights: see `judge_pair`.
+        asked: `Asked`.
+        mode: see `judge_pair`.
+        nodes: points on a leg.
+        best: out, shape (3,): cost, lack and value.
+    """
+    legs = np.empty((2, ROWS, 6))
+    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
+    tried = np.empty(3)
+    for _ in range(COMPASS_STEPS):
+        stuck = True
+        for move in range(27):
+            tried[0] = point[0] + (move % 3 - 1) * step
+            tried[1] = point[1] + (move // 3 % 3 - 1) * step / asked.depth
+            tried[2] = point[2] + (move // 9 - 1) * step / asked.depth
+            cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
+            if is_better(cost, lack, value, best):
+                best[0], best[1], best[2] = cost, lack, value
+                point[:] = tried
+                stuck = False
+        if stuck:
+            step *= 0.5

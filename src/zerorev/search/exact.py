@@ -1,20 +1,23 @@
 """The exact search over straight legs: pairs of legs that bracket the critical rates (theory §2, §3).
 
-A set of joints is to keep its direction. For one spin at the target, one leg has to lie above the critical rates of all
-those joints and the other below them, and the best leg on each side is found on its own, by a root search along one line
-of slopes (`kernels.legs`). What is left is one dimension, psi_t, in each of eight branches: it is looked over on a grid,
-and every valley of the grid is gone down to its bottom. The sets of joints are tried in the order of what it costs to
-leave the others out, so the first set that can be kept is the answer with the fewest reversals.
+A set of joints is to keep its direction. For one spin at the target, one leg has to lie above the critical rates of
+all those joints and the other below them, and the best leg on each side is found on its own, by a root search along one
+line of slopes (`kernels.legs`). What is left is one dimension, psi_t, in each of eight branches: it is looked over on a
+grid, and every valley of the grid is gone down to its bottom.
+
+All six joints are tried first. Where they cannot all be kept, all pairs of legs of a grid are counted, which bounds the
+fewest reversals from above; sets of joints that would cost less are then tried, as the grid may have missed a thin one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from zerorev.evaluation import Evaluation, evaluate, meets_threshold
 from zerorev.kernels import legs as kernels
@@ -22,11 +25,12 @@ from zerorev.kinematics import TwistPlane, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
+from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["Found", "search"]
+__all__ = ["Found", "can_run", "search"]
 
 GRID = 240  # spins at the target in one turn
 COARSE_NODES, NODES, FINE_NODES = 13, 25, 97  # points on a leg: looking over, going down, the last polish
@@ -34,6 +38,9 @@ LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 DESCENT_STEPS = 16  # golden section from two steps of the grid to some 0.001 deg
 POLISH_STEPS = 10
 CANDIDATES = 8  # valleys gone down, at most
+SEEDS, MOST_SEEDS = 6, 24  # pairs of the grid that are refined, where joints have to reverse: good ones, all
+PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
+PATTERNS = 3  # sets of reversing joints, equal in cost, of which the best motion is looked for
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
 LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
@@ -72,6 +79,39 @@ class Found:
     evaluation: Evaluation
     keeps_threshold: bool
 
+    @property
+    def score(self) -> Score:
+        """What the motion does to the joints."""
+        assert self.evaluation.score is not None
+        return self.evaluation.score
+
+    @property
+    def reversals(self) -> int:
+        """Count of direction changes over all joints."""
+        return self.score.reversals
+
+
+class Fan(NamedTuple):
+    """Legs out of every spin of a grid, in 4 postures; a NamedTuple, so that kernels take it whole.
+
+    Attributes:
+        legs: as traced on the unflipped wrist, shape (4, K, MAX_FAN, ROWS, 6).
+        slopes: twist rates, rising [rad/m], shape (4, K, MAX_FAN).
+        critical: whether a slope is a critical rate, shape (4, K, MAX_FAN).
+        fits: whether a leg can be run within the limits on either wrist flip, shape (4, K, MAX_FAN, 2).
+        counts: how many slopes there are, shape (4, K).
+        kappa: critical rates at the target [rad/m], shape (4, K, 6).
+        sense: signs of theta_psi at the target on the unflipped wrist, shape (4, K, 6).
+    """
+
+    legs: Array
+    slopes: Array
+    critical: npt.NDArray[np.bool_]
+    fits: npt.NDArray[np.bool_]
+    counts: npt.NDArray[np.int64]
+    kappa: Array
+    sense: Array
+
 
 class _Pair(NamedTuple):
     """Two legs out of one point of the target line, and what they are worth (least is best)."""
@@ -96,30 +136,27 @@ def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | 
         the motion, or None where no branch can run any.
     """
     problem = _Problem(robot, tool, hole, settings)
-    best: Found | None = None
-    for cost, keep in _joint_sets(settings.reversal_weights, problem):
-        if best is not None and cost >= problem.cost(best) - 1e-12:
+    best = problem.keeping(np.ones(6, dtype=bool), turn_inside=False)
+    if best is not None and best.reversals == 0:
+        return best
+    found = problem.surveyed() + ([] if best is None else [best])
+    if not found:
+        return None
+    best = min(found, key=problem.rank)
+    for keep in [*problem.cheaper_sets(best), *problem.like(best, found)]:
+        if problem.cost_without(keep) > problem.cost(best) + 1e-9:
             break
         # a joint left out turns at the target if it can, and within a leg only where it must
-        for turn_inside in (False,) if keep.all() else (False, True):
-            found = problem.keeping(keep, turn_inside)
-            if found is not None and (best is None or problem.cost(found) < problem.cost(best)):
-                best = found
-            if found is not None and problem.cost(found) <= cost + 1e-12:
-                return found
+        for turn_inside in (False, True):
+            better = problem.keeping(keep, turn_inside)
+            if better is not None and problem.rank(better) < problem.rank(best):
+                best = better
     return best
 
 
-def _joint_sets(weights: tuple[float, ...], problem: _Problem) -> Iterator[tuple[float, Array]]:
-    """Sets of joints to keep, cheapest to leave out first: (cost, keep (6,) bool)."""
-    yield 0.0, np.ones(6, dtype=bool)
-    # a joint that cannot be kept even on its own is in no set
-    hopeless = {i for i in range(6) if not problem.can_keep(np.arange(6) == i)}
-    left_out = [
-        set(chosen) for size in range(1, 7) for chosen in combinations(range(6), size) if hopeless <= set(chosen)
-    ]
-    for chosen in sorted(left_out, key=lambda s: (sum(weights[i] for i in s), len(s), sorted(s))):
-        yield sum(weights[i] for i in chosen), np.array([i not in chosen for i in range(6)])
+def can_run(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> bool:
+    """Whether any branch and spin can run the hole at all, whatever reverses; as far as a grid can tell."""
+    return bool(np.isfinite(_Problem(robot, tool, hole, settings).survey()).any())
 
 
 class _Problem:
@@ -130,6 +167,8 @@ class _Problem:
         self.plane: TwistPlane = twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
         bound = settings.psi_bound
+        self.weights = np.array(settings.reversal_weights, dtype=float)
+        self._fans: dict[bool, Fan] = {}
         self.periodic = bound is None
         if bound is None:
             self.psi = np.linspace(-np.pi, np.pi, GRID, endpoint=False)
@@ -152,61 +191,166 @@ class _Problem:
 
     def cost(self, found: Found) -> float:
         """Weighted count of reversals of what was found."""
-        assert found.evaluation.score is not None
-        return float(np.dot(self.settings.reversal_weights, found.evaluation.score.reversals_per_joint))
+        return float(np.dot(self.weights, found.score.reversals_per_joint))
 
-    def can_keep(self, keep: Array) -> bool:
-        """Whether the coarse look finds any pair that keeps these joints."""
-        return bool((self._scan(keep, self.asked(0.0))[..., 1] > 0).any())
+    def cost_without(self, keep: Array) -> float:
+        """What it costs, at least, to leave out the joints that are not in a set."""
+        return float(self.weights[np.logical_not(keep)].sum())
 
-    def keeping(self, keep: Array, turn_inside: bool) -> Found | None:
-        """The best motion that keeps a set of joints: the threshold first, then the objective; None if there is none."""
-        settings = self.settings
-        asked = self.asked(
-            settings.min_rate, mean_rule=settings.min_rate_rule == "mean", turn_inside=turn_inside
+    def rank(self, found: Found) -> tuple[float, float, float]:
+        """The order of plans: fewest reversals, then the motion threshold, then the objective; least is best."""
+        settings, score = self.settings, found.score
+        rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+        margin = float(rates[np.array(score.reversals_per_joint) == 0].min(initial=np.inf))
+        lack = 0.0 if found.keeps_threshold else settings.min_rate - margin
+        start, target, _ = found.profile.psi
+        value = {"travel": score.travel, "margin": -margin, "plunge_rotation": abs(target - start)}
+        return round(self.cost(found), 9), lack, value[settings.objective]
+
+    def cheaper_sets(self, best: Found) -> list[Array]:
+        """Sets of joints to keep that would cost less than what was found, cheapest first."""
+        # a joint that cannot be kept even on its own is in no set
+        hopeless = {i for i in range(6) if not self._can_keep(np.arange(6) == i)}
+        sets = [
+            np.array([i not in left_out for i in range(6)])
+            for size in range(1, 6)
+            for left_out in combinations(range(6), size)
+            if hopeless <= set(left_out)
+        ]
+        cheaper = [keep for keep in sets if self.cost_without(keep) < self.cost(best) - 1e-9]
+        return sorted(cheaper, key=lambda keep: (self.cost_without(keep), keep.tolist()))
+
+    def like(self, best: Found, found: list[Found]) -> list[Array]:
+        """Sets of joints that the best of what was found keep."""
+        kept: dict[tuple[int, ...], Array] = {}
+        for one in sorted(found, key=self.rank):
+            keep = np.array(one.score.reversals_per_joint) == 0
+            if self.cost(one) <= self.cost(best) + 1e-9:
+                kept.setdefault(tuple(keep.tolist()), keep)
+        return list(kept.values())[:PATTERNS]
+
+    def survey(self) -> Array:
+        """Cost, lack, value and slopes of the best pair of the grid at every spin, shape (8, K, 5) (theory §3)."""
+        out = np.empty((8, self.psi.size, 5))
+        asked, mode = self.objective()
+        kernels.survey(
+            self.robot.arm, self.plane, self.psi, self.fan(between=True), self.weights, asked, mode, self.branches, out
         )
+        return out
+
+    def surveyed(self) -> list[Found]:
+        """The best pairs of the grid, each refined, whatever reverses."""
+        survey, (asked, mode) = self.survey(), self.objective()
+        seeds = sorted((tuple(survey[b, n, :3]), b, n) for b, n in np.argwhere(np.isfinite(survey[..., 0])).tolist())
+        found: list[Found] = []
+        fewest = np.inf
+        taken: list[tuple[tuple[float, ...], int, int, int]] = []
+        for rough, branch, n in seeds:
+            # the coarse nodes may have jumped over a singularity: what cannot be run after all is no bound
+            if len(found) == SEEDS or len(taken) == MOST_SEEDS or (found and rough[0] > fewest + 1e-9):
+                break
+            # the wrist flips share their legs, and a neighbour goes down the same valley
+            if any(
+                (rough, branch // 2) == other[:2] or (branch == other[2] and abs(n - other[3]) <= 4) for other in taken
+            ):
+                continue
+            taken.append((rough, branch // 2, branch, n))
+            refined = self._refined(asked, mode, branch, np.array([self.psi[n], *survey[branch, n, 3:]]))
+            if refined is not None:
+                found.append(refined)
+                fewest = min(fewest, self.cost(refined))
+        return found
+
+    def _refined(self, asked: Asked, mode: int, branch: int, seed: Array) -> Found | None:
+        found, best = None, np.empty(3)
+        for nodes in (NODES, FINE_NODES, 4 * FINE_NODES):
+            point = seed.copy()
+            step = 0.5 * (self.psi[1] - self.psi[0])
+            kernels.refine(self.robot.arm, self.plane, branch, point, step, self.weights, asked, mode, nodes, best)
+            found = self._found(_Pair(best[2], branch, *point))
+            # what the nodes did not see: look again, more closely
+            if found is not None and self.cost(found) <= best[0] + 1e-9:
+                break
+        return found
+
+    def fan(self, *, between: bool) -> Fan:
+        """Legs out of every spin of the grid, followed once."""
+        if between not in self._fans:
+            shape = (4, self.psi.size, kernels.MAX_FAN)
+            fan = Fan(
+                legs=np.empty((*shape, kernels.ROWS, 6)),
+                slopes=np.empty(shape),
+                critical=np.zeros(shape, dtype=np.bool_),
+                fits=np.zeros((*shape, 2), dtype=np.bool_),
+                counts=np.zeros(shape[:2], dtype=np.int64),
+                kappa=np.empty((*shape[:2], 6)),
+                sense=np.empty((*shape[:2], 6)),
+            )
+            asked = self.asked(0.0)
+            kernels.follow(self.robot.arm, self.plane, self.psi, between, asked, COARSE_NODES, self.branches, fan)
+            self._fans[between] = fan
+        return self._fans[between]
+
+    def objective(self, *, turn_inside: bool = False) -> tuple[Asked, int]:
+        """What the settings ask of the legs, and what makes one better than another."""
+        settings = self.settings
         mode = {
             "travel": kernels.TRAVEL,
             "margin": kernels.GREATEST_MARGIN,
             "plunge_rotation": kernels.PLUNGE_ROTATION,
         }[settings.objective]
+        mean_rule = settings.min_rate_rule == "mean"
+        return self.asked(settings.min_rate, mean_rule=mean_rule, turn_inside=turn_inside), mode
+
+    def _can_keep(self, keep: Array) -> bool:
+        """Whether the coarse look finds any pair that keeps these joints."""
+        return bool((self._scan(keep, self.asked(0.0, turn_inside=True))[..., 1] > 0).any())
+
+    def keeping(self, keep: Array, turn_inside: bool) -> Found | None:
+        """The best motion that keeps a set of joints, or None: the threshold first, then the objective."""
+        asked, mode = self.objective(turn_inside=turn_inside)
+        # at the mean rule, too, it is the points that must not turn round
+        least = self.asked(0.0, turn_inside=turn_inside)
+        if not keep.all() and self._best(keep, least, kernels.GREATEST_MARGIN) is None:
+            return None  # most sets are tried in vain: once is enough
         pair = self._best(keep, asked, mode)
-        if pair is None:
-            # the threshold cannot be met: the greatest margin that can (at the mean rule, too, it is the points that
-            # must not turn round)
-            asked = self.asked(0.0, turn_inside=turn_inside)
-            mode = kernels.GREATEST_MARGIN
+        if pair is None and asked.min_rate > least.min_rate:
+            # the threshold cannot be met: the greatest margin that can
+            asked, mode = least, kernels.GREATEST_MARGIN
             pair = self._best(keep, asked, mode)
         return None if pair is None else self._polished(keep, asked, mode, pair)
 
     def _scan(self, keep: Array, asked: Asked) -> Array:
         out = np.empty((8, self.psi.size, 2))
-        kernels.scan(self.robot.arm, self.plane, self.psi, keep, asked, COARSE_NODES, self.branches, out)
+        kernels.look(self.fan(between=not keep.all()), keep, asked, out)
         return out
 
     def _best(self, keep: Array, asked: Asked, mode: int) -> _Pair | None:
         """Go down every valley of the coarse look that may hold the best pair."""
         travel, margin = np.moveaxis(self._scan(keep, asked), -1, 0)
         if mode == kernels.GREATEST_MARGIN:
-            valleys = [(-margin[b, n], b, n) for b, n in self._peaks(margin) if self._may_reach(margin, b, n, 0.0)]
+            peaks = [(b, n) for b, n in self._peaks(margin) if self._may_reach(margin, b, n, 0.0)]
+            valleys = [(-margin[b, n], -margin[b, n], b, n) for b, n in peaks]
         else:
-            valleys = [(travel[b, n], b, n) for b, n in self._peaks(-travel)]
+            valleys = [(travel[b, n], -margin[b, n], b, n) for b, n in self._peaks(-travel)]
             # between the grid's spins, too, the margin may just be enough
             valleys += [
-                (np.inf, b, n)
+                (np.inf, -margin[b, n], b, n)
                 for b, n in self._peaks(margin)
                 if margin[b, n] < asked.min_rate and self._may_reach(margin, b, n, asked.min_rate)
             ]
         best: _Pair | None = None
+        vain, patience = 0, LONG_PATIENCE if keep.all() else PATIENCE
         in_vain: set[tuple[int, int]] = set()  # the wrist flips share their legs, so what one cannot keep neither can
-        for looked_at, (rough, branch, n) in enumerate(sorted(valleys)):
-            if (branch // 2, n) in in_vain:
+        for looked_at, (rough, _, branch, n) in enumerate(sorted(valleys)):
+            if (branch // 2, n) in in_vain or vain == patience:
                 continue
             if best is not None and np.isfinite(rough) and looked_at >= CANDIDATES:
                 continue
             if best is not None and mode == kernels.TRAVEL and WORTH_A_LOOK * best.value < rough < np.inf:
                 continue
             pair = self._descend(keep, asked, mode, int(branch), n)
+            vain += pair is None
             if pair is None and margin[branch, n] == margin[branch ^ 1, n]:
                 in_vain.add((branch // 2, n))
             if pair is not None and (best is None or pair.value < best.value - 1e-9):
@@ -225,6 +369,8 @@ class _Problem:
     def _may_reach(self, margin: Array, branch: int, n: int, wanted: float) -> bool:
         """Whether the margin, which varies from one grid spin to the next, may reach `wanted` in between."""
         row, k = margin[branch], self.psi.size
+        if row[n] >= wanted:
+            return True
         around = [row[(n + d) % k] for d in (-2, -1, 1, 2) if self.periodic or 0 <= n + d < k]
         known = [value for value in around if value > -np.inf]
         variation = max((abs(row[n] - value) for value in known), default=np.inf)
@@ -338,7 +484,7 @@ def _climb(lack: Callable[[float], float], low: float, high: float) -> float:
             y = low + ratio * (high - low)
             fy = lack(y)
         least.append(min(fx, fy, least[-1]))
-        if len(least) > 4 and least[-4] - least[-1] < 0.2 * least[-1]:
+        if len(least) > 4 and not least[-4] > 1.2 * least[-1]:
             break
     return float(x if fx <= fy else y)
 
