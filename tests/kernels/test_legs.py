@@ -10,7 +10,7 @@ import pytest
 
 from oracles import legs as twin
 from zerorev import kinematics
-from zerorev.kernels import legs as kernels
+from zerorev.kernels import fan, legs, pairs
 from zerorev.model.files import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
 from zerorev.search.exact import Asked
@@ -50,10 +50,10 @@ class Start:
 
     def traced(self, nodes, branch=None):
         """Rows of the leg, or None where it cannot be run."""
-        leg = np.empty((kernels.ROWS, 6))
+        leg = np.empty((legs.ROWS, 6))
         branch = self.branch if branch is None else branch
         args = self.robot.arm, self.plane, branch, self.psi_t, self.slope, self.hole.depth, nodes, leg
-        return leg if kernels.trace_leg(*args) else None
+        return leg if legs.trace_leg(*args) else None
 
     def naive(self):
         return twin.trace(self.robot, TOOL, self.hole, self.branch, self.psi_t, self.slope)
@@ -100,16 +100,16 @@ class TestTraceLeg:
             if rough.max() > 0.5 or coarse.max() > 0.1:
                 continue  # next to a singularity, where a third derivative says little
             rows = dense.rows
-            for row in (kernels.LEAST_RATE, kernels.GREATEST_RATE):
+            for row in (legs.LEAST_RATE, legs.GREATEST_RATE):
                 assert (np.abs(leg[row] - rows[row]) <= 1e-6 + 0.2 * rough).all()
-            for row in (kernels.LEAST_ANGLE, kernels.GREATEST_ANGLE):
+            for row in (legs.LEAST_ANGLE, legs.GREATEST_ANGLE):
                 assert (np.abs(leg[row] - rows[row]) <= 1e-9 + 0.2 * coarse).all()
-            assert (np.abs(leg[kernels.MOVED] - rows[kernels.MOVED]) <= 1e-9 + coarse).all()
-            np.testing.assert_allclose(leg[kernels.END_ANGLE], rows[kernels.END_ANGLE], atol=1e-9)
-            np.testing.assert_allclose(leg[kernels.TARGET_RATE], rows[kernels.TARGET_RATE], atol=1e-9)
+            assert (np.abs(leg[legs.MOVED] - rows[legs.MOVED]) <= 1e-9 + coarse).all()
+            np.testing.assert_allclose(leg[legs.END_ANGLE], rows[legs.END_ANGLE], atol=1e-9)
+            np.testing.assert_allclose(leg[legs.TARGET_RATE], rows[legs.TARGET_RATE], atol=1e-9)
             nearest = np.abs(np.concatenate([rows[:2], dense.rates[[0, -1]]])).min(axis=0)
             clear = nearest > 1e-6 + 0.2 * rough
-            np.testing.assert_array_equal(leg[kernels.TURNS, clear], rows[kernels.TURNS, clear])
+            np.testing.assert_array_equal(leg[legs.TURNS, clear], rows[legs.TURNS, clear])
             compared += 1
         assert compared > (4 if SLOW else 60)
 
@@ -125,8 +125,8 @@ class TestTraceLeg:
             lowest = dense.rates.argmin(axis=0)
             for i in np.flatnonzero((lowest > 0) & (lowest < 2001 // 12)):
                 sampled = min(dense.rates[0, i], dense.rates[1::166, i].min())
-                assert leg[kernels.LEAST_RATE, i] <= sampled + 1e-9
-                seen += leg[kernels.LEAST_RATE, i] < dense.rates[0, i]
+                assert leg[legs.LEAST_RATE, i] <= sampled + 1e-9
+                seen += leg[legs.LEAST_RATE, i] < dense.rates[0, i]
         assert SLOW or seen >= 1
 
     def test_wrist_flips_share_their_legs(self):
@@ -137,7 +137,7 @@ class TestTraceLeg:
             if one is not None:
                 mirrored = other.copy()
                 mirrored[:, 4] = -other[[1, 0, 3, 2, 4, 5, 6, 7], 4]
-                mirrored[[kernels.MOVED, kernels.TURNS], 4] *= -1
+                mirrored[[legs.MOVED, legs.TURNS], 4] *= -1
                 np.testing.assert_allclose(one, mirrored, atol=1e-9)
 
     def test_out_of_reach_is_false(self, robot):
@@ -158,25 +158,25 @@ class TestJudgeLeg:
             wanted = asked(start.robot, start.hole, min_rate=0.2, mean_rule=mean_rule, turn_inside=turn_inside)
             sense, keep = rng.choice([-1.0, 1.0], 6), rng.random(6) < 0.6
             joints = start.at_target()[0]
-            margin, slack, travel = kernels.judge_leg(leg, sense, keep, joints, start.hole.depth, wanted)
+            margin, slack, travel = legs.judge_leg(leg, sense, keep, joints, start.hole.depth, wanted)
             theirs = twin.judge(dense, sense, keep, joints, wanted)
             np.testing.assert_allclose((margin, slack, travel), theirs, rtol=1e-3, atol=2e-3)
             compared += 1
         assert compared > 4
 
     def test_a_joint_that_does_not_move_is_not_asked_to(self, robot):
-        leg = np.zeros((kernels.ROWS, 6))
+        leg = np.zeros((legs.ROWS, 6))
         leg[:2, :5] = 3.0
         hole = Hole("any", np.array([0.5, 0.0, 0.8]), np.array([1.0, 0.0, 0.0]), 0.05)
-        margin, _, _ = kernels.judge_leg(leg, np.ones(6), ALL_JOINTS, np.zeros(6), 0.05, asked(robot, hole))
+        margin, _, _ = legs.judge_leg(leg, np.ones(6), ALL_JOINTS, np.zeros(6), 0.05, asked(robot, hole))
         assert margin == 3.0
 
 
 class TestSlopeCandidates:
     def candidates(self, kappa, keep, side, psi_t=0.0, bound=0.0, steepest=100.0):
         wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), steepest, bound)
-        out = np.empty(kernels.MAX_SLOPES)
-        return out[: kernels.slope_candidates(np.array(kappa), np.array(keep), side, psi_t, wanted, out)]
+        out = np.empty(legs.MAX_SLOPES)
+        return out[: legs.slope_candidates(np.array(kappa), np.array(keep), side, psi_t, wanted, out)]
 
     @pytest.mark.parametrize("side", [1.0, -1.0])
     def test_run_from_the_outermost_critical_rate_to_the_steepest_in_order(self, side):
@@ -193,7 +193,7 @@ class TestSlopeCandidates:
         assert slopes[0] == first
         assert (np.diff(side * slopes) > 0).all()
         between = (side * slopes > side * first) & (side * slopes < side * cut)
-        assert between.sum() == kernels.SLOPES_BETWEEN
+        assert between.sum() == legs.SLOPES_BETWEEN
 
     @pytest.mark.parametrize("side", [1.0, -1.0])
     def test_stay_within_the_bound_on_the_spin(self, side):
@@ -218,21 +218,19 @@ class TestTurns:
             for _ in range(3 if SLOW else 30):
                 principal = rng.uniform(-np.pi, np.pi, 6)
                 expected = twin.choices_of_turns(principal, wanted)
-                assert kernels.turn_choices(principal, wanted) == len(expected)
+                assert pairs.turn_choices(principal, wanted) == len(expected)
                 found = np.empty((len(expected), 6))
                 for choice in range(len(expected)):
-                    kernels.take_turns(principal, wanted, choice, found[choice])
+                    pairs.take_turns(principal, wanted, choice, found[choice])
                 np.testing.assert_allclose(sorted(found.tolist()), sorted(expected), atol=1e-12)
 
 
-def best_leg(start, side, wanted, mode=kernels.TRAVEL, keep=ALL_JOINTS, nodes=97):
+def best_leg(start, side, wanted, mode=legs.TRAVEL, keep=ALL_JOINTS, nodes=97):
     """(least cost, its slope, greatest margin) and the twin's judgement of many slopes on that side."""
     joints, kappa, sense = start.at_target()
     best = np.empty(3)
     held = (side * sense, keep, joints)
-    kernels.best_leg(
-        start.robot.arm, start.plane, start.branch, start.psi_t, side, kappa, held, wanted, mode, nodes, best
-    )
+    legs.best_leg(start.robot.arm, start.plane, start.branch, start.psi_t, side, kappa, held, wanted, mode, nodes, best)
     return best
 
 
@@ -305,7 +303,7 @@ class TestBestLeg:
             greatest = one.tried.margin[runs].max(initial=-np.inf)
             if greatest < SPARE_RATE:
                 continue
-            cost, _, margin = best_leg(one.start, one.side, one.wanted, kernels.GREATEST_MARGIN)
+            cost, _, margin = best_leg(one.start, one.side, one.wanted, legs.GREATEST_MARGIN)
             assert -cost == margin
             assert margin >= greatest * (1 - 5e-3) - SPARE_RATE / 10
             feasible += 1
@@ -316,7 +314,7 @@ class TestBestLeg:
         for one in sides:
             will_do = (one.tried.margin >= SPARE_RATE) & (one.tried.slack >= SPARE_ANGLE)
             if will_do.any():
-                cost, slope, _ = best_leg(one.start, one.side, one.wanted, kernels.PLUNGE_ROTATION)
+                cost, slope, _ = best_leg(one.start, one.side, one.wanted, legs.PLUNGE_ROTATION)
                 assert cost == abs(slope)
                 assert cost <= np.abs(one.tried.slope[will_do]).min() * (1 + 1e-6) + 1e-9
 
@@ -338,8 +336,8 @@ class TestBestLeg:
         wanted = asked(robot, start.hole, min_rate=greatest * (1 - 1e-4), limits=False)
         width = np.ptp(fine.slope[fine.margin > wanted.min_rate])
         assert width < 2e-3 * wanted.steepest
-        out = np.empty(kernels.MAX_SLOPES)
-        candidates = out[: kernels.slope_candidates(kappa, ALL_JOINTS, side, start.psi_t, wanted, out)]
+        out = np.empty(legs.MAX_SLOPES)
+        candidates = out[: legs.slope_candidates(kappa, ALL_JOINTS, side, start.psi_t, wanted, out)]
         assert judged(candidates, wanted).least_travel(wanted.min_rate) == np.inf
         cost, slope, margin = best_leg(start, side, wanted, nodes=33)
         assert np.isfinite(cost)
@@ -348,11 +346,11 @@ class TestBestLeg:
 
 
 class TestBestPair:
-    def pair(self, start, keep=ALL_JOINTS, mode=kernels.TRAVEL, **how):
+    def pair(self, start, keep=ALL_JOINTS, mode=legs.TRAVEL, **how):
         out = np.empty(4)
         wanted = asked(start.robot, start.hole, **how)
         args = start.robot.arm, start.plane, start.branch, start.psi_t, keep, wanted, wanted.unlimited(), mode
-        kernels.best_pair(*args, 25 if SLOW else 97, out)
+        pairs.best_pair(*args, 25 if SLOW else 97, out)
         return out
 
     def test_is_the_best_leg_of_either_side(self, robot, positions):
@@ -361,26 +359,26 @@ class TestBestPair:
             wanted = asked(robot, start.hole, limits=False)
             sides = [best_leg(start, side, wanted, nodes=25 if SLOW else 97) for side in (1.0, -1.0)]
             out = self.pair(start)
-            assert out[kernels.VALUE] == pytest.approx(sides[0][0] + sides[1][0], rel=1e-12)
-            assert out[kernels.SLOPE_ABOVE] == sides[0][1]
-            assert out[kernels.SLOPE_BELOW] == sides[1][1]
+            assert out[pairs.VALUE] == pytest.approx(sides[0][0] + sides[1][0], rel=1e-12)
+            assert out[pairs.SLOPE_ABOVE] == sides[0][1]
+            assert out[pairs.SLOPE_BELOW] == sides[1][1]
 
     def test_brackets_the_critical_rates_of_the_joints_to_keep(self, sides):
         keep = np.array([True, True, False, True, False, True])
         found = 0
         for start in [one.start for one in sides[::2]]:
             out = self.pair(start, keep)
-            if np.isfinite(out[kernels.VALUE]):
+            if np.isfinite(out[pairs.VALUE]):
                 kappa = start.at_target()[1][keep]
-                assert out[kernels.SLOPE_ABOVE] > kappa.max() > kappa.min() > out[kernels.SLOPE_BELOW]
+                assert out[pairs.SLOPE_ABOVE] > kappa.max() > kappa.min() > out[pairs.SLOPE_BELOW]
                 found += 1
         assert found >= 1
 
     def test_out_of_reach_there_is_none(self, robot):
         far = Hole("far", np.array([3.0, 0.0, 0.8]), np.array([1.0, 0.0, 0.0]), 0.02)
         out = self.pair(Start(robot, far, 0, 0.0, 0.0))
-        assert out[kernels.VALUE] == np.inf
-        assert out[kernels.MARGIN] == -np.inf
+        assert out[pairs.VALUE] == np.inf
+        assert out[pairs.MARGIN] == -np.inf
 
 
 class TestFan:
@@ -388,8 +386,8 @@ class TestFan:
 
     def slopes(self, kappa, *, between=True, psi_t=0.0, bound=0.0):
         wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), 100.0, bound)
-        out, critical = np.empty(kernels.MAX_FAN), np.zeros(kernels.MAX_FAN, dtype=bool)
-        count = kernels.fan_slopes(np.array(kappa), between, psi_t, wanted, out, critical)
+        out, critical = np.empty(fan.MAX_FAN), np.zeros(fan.MAX_FAN, dtype=bool)
+        count = fan.fan_slopes(np.array(kappa), between, psi_t, wanted, out, critical)
         return out[:count], critical[:count]
 
     def test_slopes_rise_from_steepest_to_steepest_and_mark_the_critical_rates(self):
@@ -410,7 +408,7 @@ class TestFan:
         assert np.abs(0.8 + slopes * 0.05).max() == pytest.approx(1.0)
 
     def test_there_is_room_for_all(self):
-        assert self.slopes([5, -8, 3, 0.1, -2, 7])[0].size <= kernels.MAX_FAN
+        assert self.slopes([5, -8, 3, 0.1, -2, 7])[0].size <= fan.MAX_FAN
 
     @pytest.mark.parametrize("weights", [(1.0,) * 6, (3.0, 1.0, 1.0, 2.0, 1.0, 0.5)])
     def test_pairs_are_judged_as_their_dense_samples(self, weights):
@@ -426,7 +424,7 @@ class TestFan:
             turned = dense[0].turns + dense[1].turns + (dense[0].rates[0] * dense[1].rates[0] > 0)
             wanted = asked(start.robot, start.hole, min_rate=1e3)
             slopes = start.slope, -start.slope
-            cost, lack, travel = kernels.judge_pair(*rows, *slopes, np.array(weights), wanted, kernels.TRAVEL)
+            cost, lack, travel = fan.judge_pair(*rows, *slopes, np.array(weights), wanted, legs.TRAVEL)
             assert cost == pytest.approx(np.dot(weights, turned))
             moved = sum(np.abs(np.diff(leg.angles, axis=0)).sum() for leg in dense)
             assert travel == pytest.approx(moved, rel=1e-4)

@@ -20,7 +20,8 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.evaluation import Evaluation, evaluate, meets_threshold
-from zerorev.kernels import legs as kernels
+from zerorev.kernels import fan as fans
+from zerorev.kernels import legs, pairs
 from zerorev.kinematics import TwistPlane, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -233,7 +234,7 @@ class _Problem:
         """Cost, lack, value and slopes of the best pair of the grid at every spin, shape (8, K, 5) (theory §3)."""
         out = np.empty((8, self.psi.size, 5))
         asked, mode = self.objective()
-        kernels.survey(
+        fans.survey(
             self.robot.arm, self.plane, self.psi, self.fan(between=True), self.weights, asked, mode, self.branches, out
         )
         return out
@@ -266,7 +267,7 @@ class _Problem:
         for nodes in (NODES, FINE_NODES, 4 * FINE_NODES):
             point = seed.copy()
             step = 0.5 * (self.psi[1] - self.psi[0])
-            kernels.refine(self.robot.arm, self.plane, branch, point, step, self.weights, asked, mode, nodes, best)
+            fans.refine(self.robot.arm, self.plane, branch, point, step, self.weights, asked, mode, nodes, best)
             found = self._found(_Pair(best[2], branch, *point))
             # what the nodes did not see: look again, more closely
             if found is not None and self.cost(found) <= best[0] + 1e-9:
@@ -276,9 +277,9 @@ class _Problem:
     def fan(self, *, between: bool) -> Fan:
         """Legs out of every spin of the grid, followed once."""
         if between not in self._fans:
-            shape = (4, self.psi.size, kernels.MAX_FAN)
+            shape = (4, self.psi.size, fans.MAX_FAN)
             fan = Fan(
-                legs=np.empty((*shape, kernels.ROWS, 6)),
+                legs=np.empty((*shape, legs.ROWS, 6)),
                 slopes=np.empty(shape),
                 critical=np.zeros(shape, dtype=np.bool_),
                 fits=np.zeros((*shape, 2), dtype=np.bool_),
@@ -287,7 +288,7 @@ class _Problem:
                 sense=np.empty((*shape[:2], 6)),
             )
             asked = self.asked(0.0)
-            kernels.follow(self.robot.arm, self.plane, self.psi, between, asked, COARSE_NODES, self.branches, fan)
+            fans.follow(self.robot.arm, self.plane, self.psi, between, asked, COARSE_NODES, self.branches, fan)
             self._fans[between] = fan
         return self._fans[between]
 
@@ -295,9 +296,9 @@ class _Problem:
         """What the settings ask of the legs, and what makes one better than another."""
         settings = self.settings
         mode = {
-            "travel": kernels.TRAVEL,
-            "margin": kernels.GREATEST_MARGIN,
-            "plunge_rotation": kernels.PLUNGE_ROTATION,
+            "travel": legs.TRAVEL,
+            "margin": legs.GREATEST_MARGIN,
+            "plunge_rotation": legs.PLUNGE_ROTATION,
         }[settings.objective]
         mean_rule = settings.min_rate_rule == "mean"
         return self.asked(settings.min_rate, mean_rule=mean_rule, turn_inside=turn_inside), mode
@@ -311,24 +312,24 @@ class _Problem:
         asked, mode = self.objective(turn_inside=turn_inside)
         # at the mean rule, too, it is the points that must not turn round
         least = self.asked(0.0, turn_inside=turn_inside)
-        if not keep.all() and self._best(keep, least, kernels.GREATEST_MARGIN) is None:
+        if not keep.all() and self._best(keep, least, legs.GREATEST_MARGIN) is None:
             return None  # most sets are tried in vain: once is enough
         pair = self._best(keep, asked, mode)
         if pair is None and asked.min_rate > least.min_rate:
             # the threshold cannot be met: the greatest margin that can
-            asked, mode = least, kernels.GREATEST_MARGIN
+            asked, mode = least, legs.GREATEST_MARGIN
             pair = self._best(keep, asked, mode)
         return None if pair is None else self._polished(keep, asked, mode, pair)
 
     def _scan(self, keep: Array, asked: Asked) -> Array:
         out = np.empty((8, self.psi.size, 2))
-        kernels.look(self.fan(between=not keep.all()), keep, asked, out)
+        fans.look(self.fan(between=not keep.all()), keep, asked, out)
         return out
 
     def _best(self, keep: Array, asked: Asked, mode: int) -> _Pair | None:
         """Go down every valley of the coarse look that may hold the best pair."""
         travel, margin = np.moveaxis(self._scan(keep, asked), -1, 0)
-        if mode == kernels.GREATEST_MARGIN:
+        if mode == legs.GREATEST_MARGIN:
             peaks = [(b, n) for b, n in self._peaks(margin) if self._may_reach(margin, b, n, 0.0)]
             valleys = [(-margin[b, n], -margin[b, n], b, n) for b, n in peaks]
         else:
@@ -347,7 +348,7 @@ class _Problem:
                 continue
             if best is not None and np.isfinite(rough) and looked_at >= CANDIDATES:
                 continue
-            if best is not None and mode == kernels.TRAVEL and WORTH_A_LOOK * best.value < rough < np.inf:
+            if best is not None and mode == legs.TRAVEL and WORTH_A_LOOK * best.value < rough < np.inf:
                 continue
             pair = self._descend(keep, asked, mode, int(branch), n)
             vain += pair is None
@@ -378,9 +379,9 @@ class _Problem:
 
     def _pair(self, keep: Array, asked: Asked, mode: int, branch: int, psi_t: float, nodes: int) -> tuple[_Pair, float]:
         out = np.empty(4)
-        kernels.best_pair(self.robot.arm, self.plane, branch, psi_t, keep, asked, asked.unlimited(), mode, nodes, out)
-        return _Pair(out[kernels.VALUE], branch, psi_t, out[kernels.SLOPE_ABOVE], out[kernels.SLOPE_BELOW]), float(
-            out[kernels.MARGIN]
+        pairs.best_pair(self.robot.arm, self.plane, branch, psi_t, keep, asked, asked.unlimited(), mode, nodes, out)
+        return _Pair(out[pairs.VALUE], branch, psi_t, out[pairs.SLOPE_ABOVE], out[pairs.SLOPE_BELOW]), float(
+            out[pairs.MARGIN]
         )
 
     def _descend(self, keep: Array, asked: Asked, mode: int, branch: int, n: int) -> _Pair | None:
@@ -391,7 +392,7 @@ class _Problem:
             return self._pair(keep, asked, mode, branch, psi_t, NODES)[0].value
 
         def lack(psi_t: float) -> float:
-            return asked.min_rate - self._pair(keep, asked, kernels.GREATEST_MARGIN, branch, psi_t, NODES)[1]
+            return asked.min_rate - self._pair(keep, asked, legs.GREATEST_MARGIN, branch, psi_t, NODES)[1]
 
         low, high = self.psi[n] - step, self.psi[n] + step
         if not self.periodic:

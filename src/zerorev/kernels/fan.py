@@ -1,0 +1,384 @@
+"""Fans: the legs out of every spin of a grid, followed once, and all pairs of them (theory §3).
+
+A fan answers the coarse questions: which spins can keep a set of joints, and which pair of legs, whatever reverses,
+has the fewest reversals.
+
+Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.kernels._jit import kernel
+from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
+from zerorev.kernels.legs import (
+    END_ANGLE,
+    GEOMETRIC_SLOPES,
+    GREATEST_ANGLE,
+    GREATEST_MARGIN,
+    GREATEST_RATE,
+    LEAST_ANGLE,
+    LEAST_RATE,
+    NIL,
+    PLUNGE_ROTATION,
+    ROWS,
+    SLOPES_BETWEEN,
+    TARGET_RATE,
+    TURNS,
+    joint_travel,
+    judge_leg,
+    trace_leg,
+)
+
+EVEN_SLOPES = 48
+MAX_FAN = 7 + 2 * GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN + EVEN_SLOPES
+COMPASS_STEPS = 40
+
+
+@kernel
+def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-untyped-def]
+    """Slopes of the legs that are followed out of one point of the target line, whatever joints are to be kept.
+
+    Args:
+        kappa: critical rates at the target [rad/m], shape (6,).
+        between: whether slopes between the critical rates are wanted, too.
+        psi_t: spin at the target [rad].
+        asked: `Asked`, for the steepest slope and the bound on the spin.
+        out: out, shape (MAX_FAN,): rising slopes.
+        critical: out, shape (MAX_FAN,): whether a slope is a critical rate.
+
+    Returns:
+        how many slopes were written.
+    """
+    low, high = -asked.steepest, asked.steepest
+    if asked.psi_bound > 0.0:
+        low = max(low, (-asked.psi_bound - psi_t) / asked.depth)
+        high = min(high, (asked.psi_bound - psi_t) / asked.depth)
+    anchors = np.empty(6)
+    pieces = 0
+    for i in range(6):
+        if low < kappa[i] < high:
+            anchors[pieces] = kappa[i]
+            pieces += 1
+    count = 0
+    if pieces == 0:
+        anchors[0] = min(max(0.0, low), high)
+        pieces = 1
+    anchors = np.sort(anchors[:pieces])
+    marked = np.zeros(MAX_FAN)
+    for p in range(pieces):
+        if p == 0 or between or p == pieces - 1:
+            out[count], marked[count] = anchors[p], 1.0
+            count += 1
+        if between and p < pieces - 1:
+            for j in range(SLOPES_BETWEEN):
+                out[count] = anchors[p] + (anchors[p + 1] - anchors[p]) * (j + 0.5) / SLOPES_BETWEEN
+                count += 1
+    for j in range(GEOMETRIC_SLOPES):
+        share = 1e-4 ** (1.0 - j / (GEOMETRIC_SLOPES - 1.0))
+        out[count] = anchors[0] - (anchors[0] - low) * share
+        out[count + 1] = anchors[pieces - 1] + (high - anchors[pieces - 1]) * share
+        count += 2
+    if between:
+        for j in range(EVEN_SLOPES):
+            out[count] = low + (high - low) * (j + 0.5) / EVEN_SLOPES
+            count += 1
+        if low < 0.0 < high:  # the spin held
+            out[count] = 0.0
+            count += 1
+    order = np.argsort(out[:count])
+    out[:count] = out[:count][order]
+    for j in range(count):
+        critical[j] = marked[order[j]] > 0.0
+    return count
+
+
+@kernel
+def follow(arm, plane, psi, between, asked, nodes, branches, fan):  # type: ignore[no-untyped-def]
+    """Follow a fan of legs out of every spin of a grid, once for both wrist flips of a posture and for any `keep`.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        psi: spins at the target [rad], shape (K,).
+        between: see `fan_slopes`.
+        asked: `Asked`.
+        nodes: points on a leg.
+        branches: whether to look at a branch, shape (8,).
+        fan: out, `Fan`.
+    """
+    cs = np.empty((6, 2))
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
+    fan.counts[:] = 0
+    fan.fits[:] = False
+    for posture in range(4):
+        if not (branches[2 * posture] or branches[2 * posture + 1]):
+            continue
+        for n in range(psi.shape[0]):
+            if not twist_field(arm, plane, 0.0, psi[n], posture, cs, theta_s, theta_psi) or np.isnan(theta_psi[0]):
+                continue
+            slopes = fan.slopes[posture, n]
+            for i in range(6):
+                fan.kappa[posture, n, i] = -theta_s[i] / theta_psi[i]
+                fan.sense[posture, n, i] = 1.0 if theta_psi[i] > 0.0 else -1.0
+            fan.sense[posture, n, 4] *= flip_sign(arm, 2 * posture)
+            count = fan_slopes(fan.kappa[posture, n], between, psi[n], asked, slopes, fan.critical[posture, n])
+            fan.counts[posture, n] = count
+            for j in range(count):
+                leg = fan.legs[posture, n, j]
+                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], asked.depth, nodes, leg):
+                    continue
+                for flip in range(2):
+                    if branches[2 * posture + flip]:
+                        controller_angles(arm, cs, flip == 1, principal)
+                        fan.fits[posture, n, j, flip] = turns_fit(leg, leg, flip == 1, principal, asked)
+
+
+@kernel
+def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
+    """Whether some turns bring both of two legs within the limits.
+
+    Args:
+        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
+        b: see a.
+        flipped: whether the legs were followed on the other wrist flip, whose joint 5 moves the other way.
+        principal: angles at the target within (-pi, pi], shape (6,).
+        asked: `Asked`.
+    """
+    for i in range(6):
+        low, high = min(a[LEAST_ANGLE, i], b[LEAST_ANGLE, i]), max(a[GREATEST_ANGLE, i], b[GREATEST_ANGLE, i])
+        if flipped and i == 4:
+            low, high = -high, -low
+        first = np.ceil((asked.lower[i] - principal[i] - low) / (2.0 * np.pi))
+        if not principal[i] + high + 2.0 * np.pi * first <= asked.upper[i]:
+            return False
+    return True
+
+
+@kernel
+def look(fan, keep, asked, out):  # type: ignore[no-untyped-def]
+    """A coarse look along the target line: what `best_pair` would find from the legs of the fan alone.
+
+    Args:
+        fan: `Fan`, from `follow`.
+        keep: whether a joint must keep its direction, shape (6,).
+        asked: `Asked`.
+        out: out, shape (8, K, 2): least travel over pairs that keep the margin (inf where none does), and the greatest
+            margin of a pair (-inf where none can be run).
+    """
+    sense, anywhere = np.empty(6), np.zeros(6)
+    best = np.empty((2, 2, 2))  # flip; side; least travel, greatest margin
+    near = np.empty((2, 2))  # flip; margin and travel of the candidate before
+    out[:, :, 0] = np.inf
+    out[:, :, 1] = -np.inf
+    for posture in range(4):
+        for n in range(fan.counts.shape[1]):
+            count = fan.counts[posture, n]
+            if count == 0:
+                continue
+            kappa = fan.kappa[posture, n]
+            best[:, :, 0] = np.inf
+            best[:, :, 1] = -np.inf
+            for k in range(2):
+                side = 1.0 - 2.0 * k
+                nearest = -np.inf
+                for i in range(6):
+                    sense[i] = side * fan.sense[posture, n, i]
+                    if keep[i] and np.isfinite(kappa[i]):
+                        nearest = max(nearest, side * kappa[i])
+                if nearest == -np.inf:
+                    nearest = 0.0
+                near[:, 0] = -np.inf
+                for m in range(count):
+                    j = m if k == 0 else count - 1 - m  # away from the critical rates
+                    if side * fan.slopes[posture, n, j] < nearest:
+                        continue
+                    fits = fan.fits[posture, n, j]
+                    if not (fits[0] or fits[1]):
+                        near[:, 0] = -np.inf
+                        continue
+                    margin, _slack, travel = judge_leg(
+                        fan.legs[posture, n, j], sense, keep, anywhere, asked.depth, asked
+                    )
+                    for flip in range(2):
+                        if not fits[flip]:
+                            near[flip, 0] = -np.inf
+                            continue
+                        best[flip, k, 1] = max(best[flip, k, 1], margin)
+                        if margin >= asked.min_rate:
+                            # the end of the interval lies between this candidate and the one before
+                            if -np.inf < near[flip, 0] < asked.min_rate:
+                                share = (margin - asked.min_rate) / (margin - near[flip, 0])
+                                end = travel + share * (near[flip, 1] - travel)
+                                best[flip, k, 0] = min(best[flip, k, 0], end)
+                            best[flip, k, 0] = min(best[flip, k, 0], travel)
+                        near[flip, 0], near[flip, 1] = margin, travel
+            for flip in range(2):
+                out[2 * posture + flip, n, 0] = best[flip, 0, 0] + best[flip, 1, 0]
+                out[2 * posture + flip, n, 1] = min(best[flip, 0, 1], best[flip, 1, 1])
+
+
+@kernel
+def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no-untyped-def]
+    """What two legs out of the same point are worth together, limits aside: each figure the less the better.
+
+    Args:
+        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
+        b: see a.
+        slope_a: twist rates [rad/m]; slope_b the other.
+        slope_b: see slope_a.
+        weights: what a reversal of each joint costs, shape (6,).
+        asked: `Asked`.
+        mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
+
+    Returns:
+        cost: weighted count of reversals.
+        lack: by how much the slowest joint that does not reverse falls short of the threshold [rad/m].
+        value: what is to be least.
+    """
+    cost, margin, travel = 0.0, np.inf, 0.0
+    for i in range(6):
+        turns = a[TURNS, i] + b[TURNS, i]
+        at_a, at_b = a[TARGET_RATE, i], b[TARGET_RATE, i]
+        if abs(at_a) > NIL and abs(at_b) > NIL and at_a * at_b > 0.0:
+            turns += 1.0
+        cost += weights[i] * turns
+        travel += joint_travel(a, i) + joint_travel(b, i)
+        moves = False
+        slowest = np.inf
+        for k in range(2):
+            leg = a if k == 0 else b
+            if leg[LEAST_RATE, i] < -NIL or leg[GREATEST_RATE, i] > NIL:
+                moves = True
+                if asked.mean_rule:
+                    slowest = min(slowest, abs(leg[END_ANGLE, i]) / asked.depth)
+                else:
+                    slowest = min(slowest, max(leg[LEAST_RATE, i], -leg[GREATEST_RATE, i]))
+        if turns == 0.0 and moves:
+            margin = min(margin, slowest)
+    lack = max(0.0, asked.min_rate - margin)
+    if mode == GREATEST_MARGIN:
+        return cost, lack, -margin
+    if mode == PLUNGE_ROTATION:
+        return cost, lack, min(abs(slope_a), abs(slope_b)) * asked.depth
+    return cost, lack, travel
+
+
+@kernel
+def is_better(cost, lack, value, than):  # type: ignore[no-untyped-def]
+    """Whether fewer reversals, else less lack of motion, else a lower value; `than` holds those three."""
+    if abs(cost - than[0]) > 1e-9:
+        return cost < than[0]
+    if abs(lack - than[1]) > 1e-12:
+        return lack < than[1]
+    return value < than[2]
+
+
+@kernel
+def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: ignore[no-untyped-def]
+    """The best pair of legs of the fan at every spin, whatever reverses (theory §3).
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        psi: spins at the target [rad], shape (K,).
+        fan: `Fan`, from `follow` with slopes between the critical rates.
+        weights: see `judge_pair`.
+        asked: `Asked`.
+        mode: see `judge_pair`.
+        branches: whether to look at a branch, shape (8,).
+        out: out, shape (8, K, 5): cost, lack and value of the best pair, inf where none can be run, and its slopes.
+    """
+    cs = np.empty((6, 2))
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty((2, 6))
+    inside = np.empty(MAX_FAN)
+    out[:] = np.inf
+    for posture in range(4):
+        for n in range(psi.shape[0]):
+            count = fan.counts[posture, n]
+            if count == 0:
+                continue
+            twist_field(arm, plane, 0.0, psi[n], posture, cs, theta_s, theta_psi)
+            controller_angles(arm, cs, False, principal[0])
+            controller_angles(arm, cs, True, principal[1])
+            legs, fits = fan.legs[posture, n], fan.fits[posture, n]
+            for j in range(count):
+                inside[j] = np.inf  # at a critical rate the count is a matter of rounding
+                if not fan.critical[posture, n, j] and (fits[j, 0] or fits[j, 1]):
+                    inside[j] = 0.0
+                    for i in range(6):
+                        inside[j] += weights[i] * legs[j, TURNS, i]
+            for x in range(count):
+                for y in range(x + 1):
+                    least = inside[x] + inside[y]
+                    if least == np.inf or least > max(out[2 * posture, n, 0], out[2 * posture + 1, n, 0]) + 1e-9:
+                        continue
+                    a, b = fan.slopes[posture, n, x], fan.slopes[posture, n, y]
+                    cost, lack, value = judge_pair(legs[x], legs[y], a, b, weights, asked, mode)
+                    for flip in range(2):
+                        best = out[2 * posture + flip, n]
+                        if (
+                            branches[2 * posture + flip] and fits[x, flip] and fits[y, flip]
+                            and is_better(cost, lack, value, best)
+                            and turns_fit(legs[x], legs[y], flip == 1, principal[flip], asked)
+                        ):  # fmt: skip
+                            best[0], best[1], best[2], best[3], best[4] = cost, lack, value, a, b
+
+
+@kernel
+def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  # type: ignore[no-untyped-def]
+    """`judge_pair` of (psi_t, slope, slope), inf where it cannot be run; `legs` is room for two legs."""
+    psi_t, a, b = point
+    if asked.psi_bound > 0.0 and (
+        max(abs(psi_t), abs(psi_t + a * asked.depth), abs(psi_t + b * asked.depth)) > asked.psi_bound
+    ):
+        return np.inf, np.inf, np.inf
+    if max(abs(a), abs(b)) > asked.steepest:
+        return np.inf, np.inf, np.inf
+    cs = np.empty((6, 2))
+    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
+    if not twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi):
+        return np.inf, np.inf, np.inf
+    controller_angles(arm, cs, branch % 2 == 1, principal)
+    if not (
+        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, legs[0])
+        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, legs[1])
+        and turns_fit(legs[0], legs[1], False, principal, asked)
+    ):
+        return np.inf, np.inf, np.inf
+    return judge_pair(legs[0], legs[1], a, b, weights, asked, mode)
+
+
+@kernel
+def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
+    """Compass search from a pair of legs: any of its three figures may move, alone or together, by ever less.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        point: in and out, shape (3,): psi_t [rad] and the two slopes [rad/m].
+        step: of psi_t, to begin with [rad].
+        weights: see `judge_pair`.
+        asked: `Asked`.
+        mode: see `judge_pair`.
+        nodes: points on a leg.
+        best: out, shape (3,): cost, lack and value.
+    """
+    legs = np.empty((2, ROWS, 6))
+    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
+    tried = np.empty(3)
+    for _ in range(COMPASS_STEPS):
+        stuck = True
+        for move in range(27):
+            tried[0] = point[0] + (move % 3 - 1) * step
+            tried[1] = point[1] + (move // 3 % 3 - 1) * step / asked.depth
+            tried[2] = point[2] + (move // 9 - 1) * step / asked.depth
+            cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
+            if is_better(cost, lack, value, best):
+                best[0], best[1], best[2] = cost, lack, value
+                point[:] = tried
+                stuck = False
+        if stuck:
+            step *= 0.5
