@@ -11,7 +11,7 @@ job = zr.read_job(Path(__file__).parent / "jobs" / "thesis_positions.yaml")
 plan = zr.plan_job(job)
 for answer in plan.holes:
     spins = np.rad2deg(answer.motion.profile.psi)
-    print(f"{answer.hole.id}: {answer.score.reversals} reversals, spins {spins.round(2)} deg, branch {answer.motion.branch}")
+    print(f"{answer.hole.id}: {answer.score.reversals} reversals at spins of {spins.round(2)} deg")
 
 with TemporaryDirectory() as folder:
     file = Path(folder) / "positions.plan.json"

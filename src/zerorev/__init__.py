@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from zerorev.depth import Deepest, deepest_stroke
     from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
     from zerorev.evaluation import evaluate
     from zerorev.model.files import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ArmGeometry",
+    "Deepest",
     "Finding",
     "Hole",
     "HolePlan",
@@ -40,6 +42,7 @@ __all__ = [
     "Settings",
     "Tool",
     "ZerorevError",
+    "deepest_stroke",
     "evaluate",
     "export",
     "plan",
@@ -55,6 +58,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "depth": ("Deepest", "deepest_stroke"),
     "errors": ("InputError", "NotExportableError", "OutputError", "ZerorevError"),
     "evaluation": ("evaluate",),
     "model.files": (

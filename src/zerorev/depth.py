@@ -1,0 +1,152 @@
+"""The deepest stroke of a hole that has no reversal, over all branches, straight legs (theory §4).
+
+There is no bisection over the depth and no search inside one: at every spin at the target the two legs march out on
+their own until a joint would stop, and the spin at which the lesser of the two runs farthest is closed in on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from zerorev.kernels import reach as kernels
+from zerorev.kinematics import twist_plane
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = ["Deepest", "deepest_stroke"]
+
+GRID = 180  # spins at the target in one turn
+STEPS_ALONG_ARM = (200, 800)  # points looked at per length of the stretched arm: looking over, closing in
+LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
+STEEPEST = float(np.deg2rad(20e3))  # [rad/m] 20 deg/mm
+LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
+LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the sums by which a leg knows its angles
+PEAKS = 10  # closed in on, at most
+CLOSING_STEPS = 24
+KEPT_BACK = 1e-6  # of the depth: the deepest leg ends where a joint stops, the plan a little before
+
+
+class Sought(NamedTuple):
+    """What a leg is held to; a NamedTuple, so that kernels take it whole. SI units."""
+
+    lower: Array
+    upper: Array
+    min_rate: float
+    psi_bound: float  # 0: periodic
+    steepest: float
+    longest: float
+    longest_twist: float
+
+
+@dataclass(frozen=True)
+class Deepest:
+    """The deepest stroke of a hole, and the motion that reaches it.
+
+    Attributes:
+        depth: [m]; 0 where no stroke, however short, has zero reversals.
+        profile: two straight legs of that stroke, or None.
+        branch: 0..7, or None.
+    """
+
+    depth: float
+    profile: Profile | None = None
+    branch: int | None = None
+
+
+def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> Deepest:
+    """The greatest stroke that still has zero reversals (theory §4); the hole's own depth is not looked at.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: target, direction and reference of the spin; its `branch`, if any, is the only one searched.
+        settings: whose `min_rate` every joint keeps at every point, and whose `psi_bound` holds the spin.
+    """
+    settings = settings or Settings()
+    return _Search(robot, tool, hole, settings).run()
+
+
+class _Search:
+    """One hole, and the marching of legs out of its target."""
+
+    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
+        self.arm, self.plane = robot.arm, twist_plane(robot, tool, hole)
+        self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
+        stretched = float(robot.arm.c2 + np.hypot(robot.arm.a2, robot.arm.c3))
+        self.coarse, self.fine = (stretched / steps for steps in STEPS_ALONG_ARM)
+        self.sought = Sought(
+            robot.limits.lower + LIMIT_SLACK,
+            robot.limits.upper - LIMIT_SLACK,
+            max(settings.min_rate, LEAST_RATE),
+            settings.psi_bound or 0.0,
+            STEEPEST,
+            2 * stretched,
+            LONGEST_TWIST,
+        )
+        bound = settings.psi_bound
+        self.periodic = bound is None
+        if bound is None:
+            self.psi = np.linspace(-np.pi, np.pi, GRID, endpoint=False)
+        else:
+            self.psi = np.linspace(-bound, bound, max(3, int(np.ceil(GRID * bound / np.pi))) + 1)
+
+    def run(self) -> Deepest:
+        depth = np.empty((8, self.psi.size))
+        kernels.scan_depth(self.arm, self.plane, self.psi, self.sought, self.coarse, self.branches, depth)
+        best = (0.0, -1, 0.0, 0.0, 0.0)
+        for branch, n in self._peaks(depth):
+            best = max(best, self._close_in(branch, n))
+        reached, branch, psi_t, above, below = best
+        if branch < 0:
+            return Deepest(0.0)
+        if self.periodic:
+            psi_t -= 2 * np.pi * np.ceil((psi_t - np.pi) / (2 * np.pi))
+        stroke = reached * (1 - KEPT_BACK)
+        plunge, retract = sorted((above, below), key=abs)
+        return Deepest(
+            stroke, Profile.straight(stroke, psi_t + plunge * stroke, psi_t, psi_t + retract * stroke), branch
+        )
+
+    def _peaks(self, depth: Array) -> list[tuple[int, int]]:
+        """The highest local maxima along the target line, highest first."""
+        left, right = np.roll(depth, 1, axis=1), np.roll(depth, -1, axis=1)
+        found = np.argwhere((depth > 0) & (depth >= left) & (depth >= right))
+        ordered = sorted(((-depth[b, n], int(b), int(n)) for b, n in found))
+        return [(b, n) for _, b, n in ordered[:PEAKS]]
+
+    def _close_in(self, branch: int, n: int) -> tuple[float, int, float, float, float]:
+        """Depth, branch, spin and slopes of the peak around one spin of the grid."""
+        step = self.psi[1] - self.psi[0]
+        low, high = self.psi[n] - step, self.psi[n] + step
+        if not self.periodic:
+            low, high = max(low, self.psi[0]), min(high, self.psi[-1])
+        out, best = np.empty(3), (0.0, float(self.psi[n]))
+
+        def depth(psi_t: float) -> float:
+            nonlocal best
+            kernels.deepest_pair(self.arm, self.plane, branch, psi_t, self.sought, self.coarse, True, out)
+            best = max(best, (float(out[0]), psi_t))
+            return float(out[0])
+
+        ratio = (np.sqrt(5) - 1) / 2
+        depth(best[1])
+        x, y = high - ratio * (high - low), low + ratio * (high - low)
+        at_x, at_y = depth(x), depth(y)
+        for _ in range(CLOSING_STEPS):
+            if at_x >= at_y:
+                high, y, at_y = y, x, at_x
+                x = high - ratio * (high - low)
+                at_x = depth(x)
+            else:
+                low, x, at_x = x, y, at_y
+                y = low + ratio * (high - low)
+                at_y = depth(y)
+        kernels.deepest_pair(self.arm, self.plane, branch, best[1], self.sought, self.fine, True, out)
+        return float(out[0]), branch, best[1], float(out[1]), float(out[2])
