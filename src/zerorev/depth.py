@@ -19,6 +19,7 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.search.line import golden
 
 __all__ = ["Deepest", "deepest_stroke"]
 
@@ -127,26 +128,12 @@ class _Search:
         low, high = self.psi[n] - step, self.psi[n] + step
         if not self.periodic:
             low, high = max(low, self.psi[0]), min(high, self.psi[-1])
-        out, best = np.empty(3), (0.0, float(self.psi[n]))
+        out, middle = np.empty(3), float(self.psi[n])
 
-        def depth(psi_t: float) -> float:
-            nonlocal best
+        def height(psi_t: float) -> float:
             kernels.deepest_pair(self.arm, self.plane, branch, psi_t, self.sought, self.coarse, True, out)
-            best = max(best, (float(out[0]), psi_t))
-            return float(out[0])
+            return -float(out[0])
 
-        ratio = (np.sqrt(5) - 1) / 2
-        depth(best[1])
-        x, y = high - ratio * (high - low), low + ratio * (high - low)
-        at_x, at_y = depth(x), depth(y)
-        for _ in range(CLOSING_STEPS):
-            if at_x >= at_y:
-                high, y, at_y = y, x, at_x
-                x = high - ratio * (high - low)
-                at_x = depth(x)
-            else:
-                low, x, at_x = x, y, at_y
-                y = low + ratio * (high - low)
-                at_y = depth(y)
-        kernels.deepest_pair(self.arm, self.plane, branch, best[1], self.sought, self.fine, True, out)
-        return float(out[0]), branch, best[1], float(out[1]), float(out[2])
+        best = min(golden(height, low, high, CLOSING_STEPS), middle, key=height)
+        kernels.deepest_pair(self.arm, self.plane, branch, best, self.sought, self.fine, True, out)
+        return float(out[0]), branch, best, float(out[1]), float(out[2])

@@ -11,7 +11,6 @@ fewest reversals from above; sets of joints that would cost less are then tried,
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -30,6 +29,7 @@ from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.search.line import climb, edge, golden
 
 __all__ = ["Found", "can_run", "search"]
 
@@ -399,11 +399,11 @@ class _Problem:
             low, high = max(low, self.psi[0]), min(high, self.psi[-1])
         inside = float(self.psi[n])
         if not np.isfinite(value(inside)):
-            inside = _climb(lack, low, high)
+            inside = climb(lack, low, high, DESCENT_STEPS)
             if not np.isfinite(value(inside)):
                 return None
-        low, high = _edge(value, inside, low), _edge(value, inside, high)
-        bottom = _golden(value, low, high, DESCENT_STEPS)
+        low, high = edge(value, inside, low, DESCENT_STEPS), edge(value, inside, high, DESCENT_STEPS)
+        bottom = golden(value, low, high, DESCENT_STEPS)
         return min(self._pair(keep, asked, mode, branch, psi, NODES)[0] for psi in (bottom, inside, low, high))
 
     def _polished(self, keep: Array, asked: Asked, mode: int, pair: _Pair) -> Found | None:
@@ -418,7 +418,7 @@ class _Problem:
             def value(psi_t: float, asked: Asked = asked) -> float:
                 return self._pair(keep, asked, mode, pair.branch, psi_t, FINE_NODES)[0].value
 
-            psi_t = _golden(value, low, high, POLISH_STEPS)
+            psi_t = golden(value, low, high, POLISH_STEPS)
             fine = min(self._pair(keep, asked, mode, pair.branch, psi, FINE_NODES)[0] for psi in (psi_t, pair.psi_t))
             found = self._found(fine if np.isfinite(fine.value) else pair)
             if found is not None and found.evaluation.score is not None:
@@ -446,58 +446,3 @@ class _Problem:
         if evaluation.score is None:
             return None
         return Found(profile, pair.branch, evaluation, meets_threshold(evaluation.score, self.settings))
-
-
-def _golden(f: Callable[[float], float], low: float, high: float, steps: int) -> float:
-    """Where f is least between low and high, if it has one valley there."""
-    ratio = (np.sqrt(5) - 1) / 2
-    x, y = high - ratio * (high - low), low + ratio * (high - low)
-    fx, fy = f(x), f(y)
-    for _ in range(steps):
-        if fx <= fy:
-            high, y, fy = y, x, fx
-            x = high - ratio * (high - low)
-            fx = f(x)
-        else:
-            low, x, fx = x, y, fy
-            y = low + ratio * (high - low)
-            fy = f(y)
-    return float(x if fx <= fy else y)
-
-
-def _climb(lack: Callable[[float], float], low: float, high: float) -> float:
-    """A spin between low and high at which nothing is lacking, or where least is.
-
-    Golden section that stops as soon as nothing is lacking, or as soon as what is gained has become too little to get
-    there: near the bottom of a valley the gains of each step shrink.
-    """
-    ratio = (np.sqrt(5) - 1) / 2
-    x, y = high - ratio * (high - low), low + ratio * (high - low)
-    fx, fy = lack(x), lack(y)
-    least = [min(fx, fy)]
-    while least[-1] > 0 and len(least) < DESCENT_STEPS:
-        if fx <= fy:
-            high, y, fy = y, x, fx
-            x = high - ratio * (high - low)
-            fx = lack(x)
-        else:
-            low, x, fx = x, y, fy
-            y = low + ratio * (high - low)
-            fy = lack(y)
-        least.append(min(fx, fy, least[-1]))
-        if len(least) > 4 and not least[-4] > 1.2 * least[-1]:
-            break
-    return float(x if fx <= fy else y)
-
-
-def _edge(f: Callable[[float], float], inside: float, outside: float) -> float:
-    """The last spin towards `outside` at which f is finite."""
-    if np.isfinite(f(outside)):
-        return outside
-    for _ in range(DESCENT_STEPS):
-        middle = (inside + outside) / 2
-        if np.isfinite(f(middle)):
-            inside = middle
-        else:
-            outside = middle
-    return inside
