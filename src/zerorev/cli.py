@@ -75,7 +75,7 @@ def plan(job: Path, /, *, output: Output = None, figures: Path | None = None, js
         check_file(output)
         _not_over(output, job)
     if figures is not None:
-        _need_matplotlib()
+        _need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
     wanted = read_job(job)
 
@@ -135,26 +135,40 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
 
 
 @app.command
-def check(plan: Path, /, *, json: bool = False) -> int:
+def check(plan: Path, /, *, certify: bool = False, json: bool = False) -> int:
     """Check a plan anew, from the robot, the tool and the holes that it states.
 
     Args:
         plan: The plan file (JSON).
+        certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
+            file; what is refuted or cannot be decided is said.
         json: Print the checked plan as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import plan_to_json, read_plan
+    from zerorev.model.files import plan_to_json, read_plan, write_plan
+    from zerorev.model.output import check_file
 
+    if certify:
+        _need("flint", "python-flint", "--certify", "certify")
+        check_file(plan)
     answer = read_plan(plan)
 
     from zerorev.verify import verify_plan
 
     with terminal.busy("checking"):
         answer = verify_plan(answer)
+    if certify:
+        from zerorev.verify.certificate import certify_plan
+
+        with terminal.busy("proving"):
+            answer = certify_plan(answer)
+        write_plan(answer, plan)
     if json:
         terminal.print_json(plan_to_json(answer))
     else:
         _show_plan(answer)
-    return _verdict(answer)
+        if certify:
+            terminal.say(f"check and certificates written into {plan}")
+    return _verdict(answer, certify=certify)
 
 
 @app.command
@@ -210,10 +224,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return result if isinstance(result, int) else FINE
 
 
-def _verdict(answer: Plan) -> int:
+def _verdict(answer: Plan, *, certify: bool = False) -> int:
     wrong = any(finding.level == "error" for finding in answer.all_findings)
-    proven = all(hole.verified is not None and hole.verified.passed for hole in answer.holes)
-    return FINE if proven and not wrong else FOUND
+    checked = all(hole.verified is not None and hole.verified.passed for hole in answer.holes)
+    certified = all(hole.certificate is not None and hole.certificate.verdict == "certified" for hole in answer.holes)
+    return FINE if checked and (certified or not certify) and not wrong else FOUND
 
 
 def _not_over(output: Path, source: Path) -> None:
@@ -221,12 +236,12 @@ def _not_over(output: Path, source: Path) -> None:
         raise OutputError(str(output), "it is the file that is read")
 
 
-def _need_matplotlib() -> None:
+def _need(module: str, package: str, option: str, extra: str) -> None:
     from importlib.util import find_spec
 
-    if find_spec("matplotlib") is None:
+    if find_spec(module) is None:
         raise InputError(
-            "needs matplotlib, which is not installed", where="--figures", accepted="pip install 'zerorev[figures]'"
+            f"needs {package}, which is not installed", where=option, accepted=f"pip install 'zerorev[{extra}]'"
         )
 
 
@@ -234,4 +249,10 @@ def _show_plan(answer: Plan) -> None:
     from zerorev.report import tables
 
     terminal.out().print(tables.plan_table(answer))
-    terminal.print_lines(tables.finding_lines((*answer.all_findings, *tables.failed_checks(answer))))
+    terminal.print_lines(
+        tables.finding_lines((*answer.all_findings, *tables.failed_checks(answer), *tables.open_proofs(answer)))
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -14,7 +14,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["Baseline", "Event", "Finding", "HolePlan", "Motion", "Plan", "Score", "Verification"]
+__all__ = ["Baseline", "Certificate", "Event", "Finding", "HolePlan", "Motion", "Plan", "Score", "Verification"]
 
 Level = Literal["error", "warning", "info"]
 LegName = Literal["plunge", "target", "retract"]
@@ -134,6 +134,29 @@ class Verification:
 
 
 @dataclass(frozen=True)
+class Certificate:
+    """What is proven of the continuous motion, not of samples of it (issue 3: a certificate).
+
+    Attributes:
+        verdict: `certified` (no joint reverses, no limit is passed, every pose is in reach and clear of singularities,
+            also where breakpoints are blended, and the claims hold), `refuted` (something is proven to be wrong), or
+            `undecided`.
+        pieces: into how many the motion was cut.
+        min_rate: no |d theta / d path| on the two legs is less [rad/m], shape (6,); NaN where nothing is proven.
+        blend_min_rate: the same in the blends, counted by the path that a blend replaces; NaN without one.
+        limit_distance: no distance to a joint limit is less [rad], shape (6,); NaN where nothing is proven.
+        reasons: what is refuted or undecided, one sentence each; empty where certified.
+    """
+
+    verdict: Literal["certified", "refuted", "undecided"]
+    pieces: int
+    min_rate: Array
+    blend_min_rate: Array
+    limit_distance: Array
+    reasons: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class HolePlan:
     """One hole's answer.
 
@@ -146,6 +169,7 @@ class HolePlan:
         verified: the independent check, or None where it was not run.
         findings: what a user should know.
         wrist_offset: distance of the wrist centre from the drill axis [m], the lever of the spin (theory §1).
+        certificate: the rigorous proof, or None where it was not asked for.
     """
 
     hole: Hole
@@ -156,6 +180,7 @@ class HolePlan:
     baseline: Baseline | None = None
     verified: Verification | None = None
     findings: tuple[Finding, ...] = ()
+    certificate: Certificate | None = None
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,10 @@ from zerorev.model.conversion import (
     tool_from,
 )
 from zerorev.model.hole import Hole
-from zerorev.model.plan import Baseline, Event, Finding, HolePlan, Motion, Plan, Score, Verification
+from zerorev.model.plan import Baseline, Certificate, Event, Finding, HolePlan, Motion, Plan, Score, Verification
 from zerorev.model.plan_schema import (
     BaselineForm,
+    CertificateForm,
     FindingForm,
     GivenForm,
     JointsDegForm,
@@ -68,6 +69,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "wrist_offset_mm": mm(answer.wrist_offset),
         "baseline": _baseline_data(answer.baseline),
         "verified": _verified_data(answer.verified),
+        "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
         "findings": [vars(finding) for finding in answer.findings],
     }
 
@@ -129,6 +131,17 @@ def _verified_data(verified: Verification | None) -> dict[str, Any] | None:
         "max_joint_step_deg": deg(verified.max_joint_step),
         "min_limit_distance_deg": deg(verified.min_limit_distance),
         "failures": verified.failures,
+    }
+
+
+def _certificate_data(certificate: Certificate) -> dict[str, Any]:
+    return {
+        "verdict": certificate.verdict,
+        "pieces": certificate.pieces,
+        "min_rate_deg_per_mm": deg_per_mm(certificate.min_rate),
+        "blend_min_rate_deg_per_mm": deg_per_mm(certificate.blend_min_rate),
+        "limit_distance_deg": deg(certificate.limit_distance),
+        "reasons": certificate.reasons,
     }
 
 
@@ -204,6 +217,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             baseline=_baseline_from(form.baseline),
             verified=_verified_from(form.verified),
             findings=_findings_from(form.findings),
+            certificate=_certificate_from(form.certificate) if form.certificate else None,
         )
 
 
@@ -267,6 +281,17 @@ def _verified_from(form: VerifiedForm | None) -> Verification | None:
         max_joint_step=float(rad(_measured(form.max_joint_step_deg))),
         min_limit_distance=float(rad(_measured(form.min_limit_distance_deg))),
         failures=tuple(form.failures),
+    )
+
+
+def _certificate_from(form: CertificateForm) -> Certificate:
+    return Certificate(
+        verdict=form.verdict,
+        pieces=form.pieces,
+        min_rate=rad_per_m(_measured(form.min_rate_deg_per_mm)),
+        blend_min_rate=rad_per_m(_measured(form.blend_min_rate_deg_per_mm)),
+        limit_distance=rad(_measured(form.limit_distance_deg)),
+        reasons=tuple(form.reasons),
     )
 
 

@@ -21,7 +21,16 @@ from zerorev.model.schema import (
     ToolForm,
 )
 
-__all__ = ["BaselineForm", "FindingForm", "GivenForm", "JointsDegForm", "PlanFile", "PlanHole", "VerifiedForm"]
+__all__ = [
+    "BaselineForm",
+    "CertificateForm",
+    "FindingForm",
+    "GivenForm",
+    "JointsDegForm",
+    "PlanFile",
+    "PlanHole",
+    "VerifiedForm",
+]
 
 SixMeasured = Annotated[list[float | None], Field(min_length=6, max_length=6)]
 SixCounts = Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=6, max_length=6)]
@@ -102,6 +111,21 @@ class VerifiedForm(Form):
     failures: list[str] = Field(description="a list of text: one sentence a failed check")
 
 
+class CertificateForm(Form):
+    """What is proven of the continuous motion; bounds are null where nothing is proven."""
+
+    verdict: Literal["certified", "refuted", "undecided"] = Field(
+        description="certified (proven), refuted (proven to be wrong) or undecided"
+    )
+    pieces: int = Field(ge=0, description="a whole number: pieces into which the motion was cut")
+    min_rate_deg_per_mm: SixMeasured = Field(description="six numbers [deg/mm]: on the legs no joint moves slower")
+    blend_min_rate_deg_per_mm: SixMeasured = Field(
+        description="six numbers [deg/mm]: in the blends no joint moves slower; null without one"
+    )
+    limit_distance_deg: SixMeasured = Field(description="six numbers [deg]: no joint comes nearer to a limit")
+    reasons: list[str] = Field(description="a list of text: what is refuted or undecided, one sentence each")
+
+
 class PlanHole(Form):
     """One hole's answer; what describes a motion is null where there is none."""
 
@@ -140,6 +164,9 @@ class PlanHole(Form):
     )
     verified: VerifiedForm | None = Field(
         description="a mapping of what was checked, and the outcome; or null: it was not"
+    )
+    certificate: CertificateForm | None = Field(
+        default=None, description="a mapping of what is proven of the continuous motion; or null: it was not asked for"
     )
     findings: list[FindingForm] = Field(description="a list of level, kind, message and hole")
 

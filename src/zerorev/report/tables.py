@@ -17,6 +17,7 @@ from zerorev.model.robot import Robot
 __all__ = [
     "failed_checks",
     "finding_lines",
+    "open_proofs",
     "plan_table",
     "robot_heading",
     "robot_lines",
@@ -25,6 +26,7 @@ __all__ = [
     "robots_table",
 ]
 
+PROOFS = {"certified": "green", "undecided": "yellow", "refuted": "bold red"}
 LEVELS = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding; what is left is counted
 HOLES_NAMED = 6
@@ -55,6 +57,8 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
     verdict = Text("no", style="yellow") if checked is None else Text("yes", style="green")
     if checked is not None and not checked.passed:
         verdict = Text("FAILED", style="bold red")
+    if hole.certificate is not None:
+        verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
         Text(_number(np.rad2deg(score.travel), 1)),
@@ -102,6 +106,16 @@ def failed_checks(plan: Plan) -> list[Finding]:
         for failure in hole.verified.failures or ("the check failed",)
     ]
     return [finding for finding in found if finding not in plan.all_findings]
+
+
+def open_proofs(plan: Plan) -> list[Finding]:
+    """What the certificates refute, as errors, and what they leave undecided, as warnings."""
+    return [
+        Finding("error" if hole.certificate.verdict == "refuted" else "warning", "certificate", reason, hole.hole.id)
+        for hole in plan.holes
+        if hole.certificate is not None
+        for reason in hole.certificate.reasons
+    ]
 
 
 def _named(holes: Sequence[str]) -> str:
