@@ -5,7 +5,7 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test quick lint schemas clean
+.PHONY: demo test long lint schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
 	mkdir -p $(OUT)
@@ -18,12 +18,12 @@ demo: $(READY)  ## plan, check and export the three positions of the thesis, wit
 	$(BIN)/zerorev check $(OUT)/thesis_positions.plan.json
 	$(BIN)/zerorev export $(OUT)/thesis_positions.plan.json --controller krl -o $(OUT)/thesis_positions.src
 
-test: lint  ## everything that must hold
-	$(BIN)/pytest
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest tests/kernels -q
-
-quick: $(READY)  ## the tests that take no long time
+test: lint  ## what must hold; the tests marked long are left to `make long`
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/kernels -m "not long"
 	$(BIN)/pytest -q -m "not long"
+
+long: $(READY)  ## the tests that take minutes
+	$(BIN)/pytest -q -m long
 
 lint: $(READY)
 	$(BIN)/ruff check .
