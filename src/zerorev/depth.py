@@ -20,14 +20,13 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.line import golden
+from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, straight_motion, target_spins
 
 __all__ = ["Deepest", "deepest_stroke"]
 
 GRID = 180  # spins at the target in one turn
 STEPS_ALONG_ARM = (200, 800)  # points looked at per length of the stretched arm: looking over, closing in
-LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 STEEPEST = float(np.deg2rad(20e3))  # [rad/m] 20 deg/mm
-LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
 LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the sums by which a leg knows its angles
 PEAKS = 10  # closed in on, at most
 CLOSING_STEPS = 24
@@ -91,12 +90,8 @@ class _Search:
             2 * stretched,
             LONGEST_TWIST,
         )
-        bound = settings.psi_bound
-        self.periodic = bound is None
-        if bound is None:
-            self.psi = np.linspace(-np.pi, np.pi, GRID, endpoint=False)
-        else:
-            self.psi = np.linspace(-bound, bound, max(3, int(np.ceil(GRID * bound / np.pi))) + 1)
+        self.periodic = settings.psi_bound is None
+        self.psi = target_spins(settings.psi_bound, GRID)
 
     def run(self) -> Deepest:
         depth = np.empty((8, self.psi.size))
@@ -107,13 +102,8 @@ class _Search:
         reached, branch, psi_t, above, below = best
         if branch < 0:
             return Deepest(0.0)
-        if self.periodic:
-            psi_t -= 2 * np.pi * np.ceil((psi_t - np.pi) / (2 * np.pi))
         stroke = reached * (1 - KEPT_BACK)
-        plunge, retract = sorted((above, below), key=abs)
-        return Deepest(
-            stroke, Profile.straight(stroke, psi_t + plunge * stroke, psi_t, psi_t + retract * stroke), branch
-        )
+        return Deepest(stroke, straight_motion(stroke, psi_t, (above, below), periodic=self.periodic), branch)
 
     def _peaks(self, depth: Array) -> list[tuple[int, int]]:
         """The highest local maxima along the target line, highest first."""

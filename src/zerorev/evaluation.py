@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -32,7 +33,7 @@ __all__ = [
     "thesis_objective",
 ]
 
-NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
+NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_SEGMENT = 200
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
 CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a segment is seen

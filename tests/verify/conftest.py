@@ -1,5 +1,6 @@
 """Robots and the tool straight from their files, the published plans, and plans with honest claims to spoil."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import branch_of, posture_of, skeleton
+from zerorev.verify.certificate import certify_hole
 from zerorev.verify.measure import mean_rates, rates, reversals, travel
 from zerorev.verify.path import Track, follow, legs
 from zerorev.verify.sound import limit_distances
@@ -166,3 +168,26 @@ def random_hole():
                 return hole, profile, start
 
     return make
+
+
+@pytest.fixture
+def modest(published):
+    """Plans with claims that are a little modest: those of the fixture are measured by steps, not at points."""
+
+    def make(position, psi_deg=None):
+        plan = published(position, psi_deg)
+        score = plan.score
+        modestly = replace(score, min_rate=score.min_rate * 0.5, mean_rate=score.mean_rate * (1 - 1e-6))
+        return replace(plan, score=modestly)
+
+    return make
+
+
+@pytest.fixture
+def prove(kuka, drill, settings):
+    def run(plan, *, robot=kuka, **changes):
+        answer = certify_hole(robot, drill, replace(settings, **changes), plan)
+        assert (answer.verdict == "certified") == (not answer.reasons)
+        return answer
+
+    return run

@@ -22,27 +22,6 @@ from zerorev.verify.path import Track, follow, legs
 from zerorev.verify.sound import limit_distances
 
 
-@pytest.fixture
-def modest(published):
-    """Plans with claims that are a little modest: those of the fixture are measured by steps, not at points."""
-
-    def make(position, psi_deg=None):
-        plan = published(position, psi_deg)
-        return score(plan, min_rate=plan.score.min_rate * 0.5, mean_rate=plan.score.mean_rate * (1 - 1e-6))
-
-    return make
-
-
-@pytest.fixture
-def prove(kuka, drill, settings):
-    def run(plan, *, robot=kuka, **changes):
-        answer = certify_hole(robot, drill, replace(settings, **changes), plan)
-        assert (answer.verdict == "certified") == (not answer.reasons)
-        return answer
-
-    return run
-
-
 def track_of(robot, tool, hole, profile, start, samples=20_000):
     path = legs(profile, samples)
     return Track(path, follow(robot, tool, hole, path, sampled_posture(robot.arm, start[None]), start))

@@ -8,28 +8,7 @@ import pytest
 import zerorev.verify.certificate as certificate
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.verify.certificate import certify_hole, certify_motion
-
-
-@pytest.fixture
-def modest(published):
-    """Plans with claims that are a little modest: those of the fixture are measured by steps, not at points."""
-
-    def make(position, psi_deg=None):
-        plan = published(position, psi_deg)
-        return score(plan, min_rate=plan.score.min_rate * 0.5, mean_rate=plan.score.mean_rate * (1 - 1e-6))
-
-    return make
-
-
-@pytest.fixture
-def prove(kuka, drill, settings):
-    def run(plan, *, robot=kuka, **changes):
-        answer = certify_hole(robot, drill, replace(settings, **changes), plan)
-        assert (answer.verdict == "certified") == (not answer.reasons)
-        return answer
-
-    return run
+from zerorev.verify.certificate import certify_motion
 
 
 def score(plan, **changes):

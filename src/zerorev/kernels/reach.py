@@ -11,14 +11,13 @@ import numpy as np
 
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
+from zerorev.kernels.legs import GOLDEN, NIL
 from zerorev.kernels.pairs import take_turns, turn_choices
 
-NIL = np.deg2rad(1e-6)  # [rad/m] 1e-9 deg/mm: below it a joint does not move
 SLOPES = 24  # tried on each side, in geometric steps away from the critical rates
 LEAST_STEP_AWAY = 2e-4  # of the steepest slope: the first of them
 GOLDEN_STEPS = 24
 BISECTIONS = 40
-GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 # columns of what a search returns
 DEPTH, SLOPE_ABOVE, SLOPE_BELOW = range(3)
 

@@ -30,12 +30,12 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.line import climb, edge, golden
+from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, straight_motion, target_spins
 
 __all__ = ["Found", "can_run", "search"]
 
 GRID = 240  # spins at the target in one turn
 COARSE_NODES, NODES, FINE_NODES = 13, 25, 97  # points on a leg: looking over, going down, the last polish
-LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 DESCENT_STEPS = 16  # golden section from two steps of the grid to some 0.001 deg
 POLISH_STEPS = 10
 CANDIDATES = 8  # valleys gone down, at most
@@ -43,7 +43,6 @@ SEEDS, MOST_SEEDS = 6, 24  # pairs of the grid that are refined, where joints ha
 PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
 PATTERNS = 3  # sets of reversing joints, equal in cost, of which the best motion is looked for
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
-LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
 
 
@@ -167,14 +166,10 @@ class _Problem:
         self.robot, self.tool, self.hole, self.settings = robot, tool, hole, settings
         self.plane: TwistPlane = twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
-        bound = settings.psi_bound
         self.weights = np.array(settings.reversal_weights, dtype=float)
         self._fans: dict[bool, Fan] = {}
-        self.periodic = bound is None
-        if bound is None:
-            self.psi = np.linspace(-np.pi, np.pi, GRID, endpoint=False)
-        else:
-            self.psi = np.linspace(-bound, bound, max(3, int(np.ceil(GRID * bound / np.pi))) + 1)
+        self.periodic = settings.psi_bound is None
+        self.psi = target_spins(settings.psi_bound, GRID)
 
     def asked(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Asked:
         """What the legs are held to."""
@@ -436,12 +431,7 @@ class _Problem:
 
     def _found(self, pair: _Pair) -> Found | None:
         hole, depth = self.hole, self.hole.depth
-        psi_t = pair.psi_t
-        if self.periodic:
-            psi_t -= 2 * np.pi * np.ceil((psi_t - np.pi) / (2 * np.pi))
-        # of the two twins the one that turns the tool less while it cuts (theory §2)
-        plunge, retract = sorted((pair.above, pair.below), key=abs)
-        profile = Profile.straight(depth, psi_t + plunge * depth, psi_t, psi_t + retract * depth)
+        profile = straight_motion(depth, pair.psi_t, (pair.above, pair.below), periodic=self.periodic)
         evaluation = evaluate(self.robot, self.tool, hole, profile, pair.branch, self.settings)
         if evaluation.score is None:
             return None

@@ -1,0 +1,42 @@
+"""What all searches over straight legs share: how far they look, and how two legs become a motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.profile import Profile
+
+__all__ = ["LEAST_RATE", "LONGEST_TWIST", "straight_motion", "target_spins"]
+
+LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
+LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
+
+
+def target_spins(psi_bound: float | None, per_turn: int) -> Array:
+    """Evenly spaced spins at the target [rad], shape (K,).
+
+    Args:
+        psi_bound: spins within +- this [rad], both ends among them; None: once round the circle.
+        per_turn: how many a full turn would have.
+    """
+    if psi_bound is None:
+        return np.linspace(-np.pi, np.pi, per_turn, endpoint=False)
+    return np.linspace(-psi_bound, psi_bound, max(3, int(np.ceil(per_turn * psi_bound / np.pi))) + 1)
+
+
+def straight_motion(depth: float, psi_t: float, slopes: tuple[float, float], *, periodic: bool) -> Profile:
+    """The motion of two straight legs out of the target.
+
+    Of the two twins it is the one that turns the tool less while it cuts (theory §2).
+
+    Args:
+        depth: length of the legs [m].
+        psi_t: spin at the target [rad]; brought within (-pi, pi] where the spin is periodic.
+        slopes: twist rates of the two legs, in any order [rad/m].
+        periodic: whether full turns of the tool do not matter.
+    """
+    if periodic:
+        psi_t -= 2 * np.pi * np.ceil((psi_t - np.pi) / (2 * np.pi))
+    plunge, retract = sorted(slopes, key=abs)
+    return Profile.straight(depth, psi_t + plunge * depth, psi_t, psi_t + retract * depth)
