@@ -5,7 +5,7 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test long lint schemas clean
+.PHONY: demo test long bench lint schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
 	mkdir -p $(OUT)
@@ -31,6 +31,9 @@ lint: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+bench: $(VENV)/.bench  ## zerorev and its peers at the same work; a part or less of it: make bench BENCH="field --quick"
+	$(BIN)/python -m benchmarks.run $(BENCH)
+
 schemas: $(READY)  ## rewrite the published JSON Schemas of job and plan files
 	$(BIN)/python -c "from zerorev.model.files import write_schemas; write_schemas('docs/schemas')"
 
@@ -39,6 +42,10 @@ $(READY): pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt hatchling editables
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-build-isolation --editable ".[dev]"
 	touch $(READY)
+
+$(VENV)/.bench: $(READY)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --no-build-isolation --editable ".[dev,bench]"
+	touch $(VENV)/.bench
 
 clean:
 	rm -rf $(VENV) out build dist

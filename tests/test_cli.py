@@ -165,7 +165,7 @@ class TestPlan:
         def interrupted(*_, **__):
             raise KeyboardInterrupt
 
-        monkeypatch.setattr("zerorev.planning.plan_job", interrupted)
+        monkeypatch.setattr("zerorev.jobs.plan", interrupted)
         assert main(["plan", str(write_job()), "-o", str(tmp_path / "plan.json")]) == cli.INTERRUPTED
         one_message(capsys, "interrupted")
         assert [path.name for path in tmp_path.iterdir()] == ["panel.yaml"]
@@ -174,9 +174,104 @@ class TestPlan:
         def broken(*_, **__):
             raise ZeroDivisionError
 
-        monkeypatch.setattr("zerorev.planning.plan_job", broken)
+        monkeypatch.setattr("zerorev.jobs.plan", broken)
         assert main(["plan", str(write_job())]) == cli.BUG
         assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+def axis(name, **changes):
+    """A hole without a depth."""
+    return deepcopy({key: GIVEN[key] for key in ("target_mm", "direction", "branch")}) | {"id": name} | changes
+
+
+@pytest.fixture(scope="module")
+def depth_file(tmp_path_factory):
+    """Depths of two holes without depth_mm, one of them out of reach."""
+    folder = tmp_path_factory.mktemp("depth")
+    job = folder / "panel.yaml"
+    job.write_text(yaml.safe_dump(JOB | {"holes": [axis("P1"), axis("far", target_mm=[5000, 0, 0])]}))
+    assert main(["depth", str(job), "-o", str(folder / "depths.json"), "--json"]) == cli.FOUND
+    return folder / "depths.json"
+
+
+class TestDepth:
+    """Strokes and plans; that they are the deepest is for the tests of `deepest_stroke`."""
+
+    def test_the_file_holds_depths_and_plans(self, depth_file):
+        data = json.loads(depth_file.read_text())
+        assert data["format"] == "zerorev.depth/1"
+        assert data["settings"]["legs"] == "straight"
+        first, second = data["holes"]
+        assert set(first) == {"id", "deepest_mm", "plan"}
+        assert first["id"] == "P1"
+        assert 80 < first["deepest_mm"] < 104.7  # 104.6 mm on the best of all branches (theory §7)
+        plan = first["plan"]
+        assert plan["depth_mm"] == plan["standoff_mm"][0] == plan["deepest_mm"] == first["deepest_mm"]
+        assert plan["status"] == "planned"
+        assert plan["branch"] == 4
+        assert plan["reversals"] == 0
+        assert plan["verified"]["passed"]
+        assert second["deepest_mm"] == 0
+        assert second["plan"]["status"] == "infeasible"
+        assert second["plan"]["findings"][0]["kind"] == "unreachable"
+
+    def test_it_is_checked_certified_and_exported_as_a_plan_is(self, depth_file, tmp_path, capsys):
+        pytest.importorskip("flint")
+        copy, program = tmp_path / "depths.json", tmp_path / "deep.src"
+        copy.write_bytes(depth_file.read_bytes())
+        assert main(["check", "--certify", str(copy)]) == cli.FOUND  # for the hole that is out of reach
+        assert (
+            "deepest without a reversal: straight legs; no motion threshold; spin periodic" in capsys.readouterr().out
+        )
+        before, after = (json.loads(path.read_text()) for path in (depth_file, copy))
+        assert after["holes"][0]["plan"].pop("certificate")["verdict"] == "certified"
+        assert before["holes"][0]["plan"].pop("certificate") is None
+        assert all(data["holes"][0]["plan"].pop("verified")["passed"] for data in (before, after))
+        assert after == before
+        assert main(["export", str(copy), "--skip-failed", "-o", str(program)]) == cli.FINE
+        assert "DEF deep" in program.read_text()
+
+    def test_what_contradicts_itself_is_refused(self, depth_file, tmp_path, capsys):
+        forged = tmp_path / "forged.json"
+        data = json.loads(depth_file.read_text())
+        data["holes"][0]["deepest_mm"] += 10
+        forged.write_text(json.dumps(data))
+        assert main(["check", str(forged)]) == cli.BAD_INPUT
+        one_message(capsys, "forged.json", "hole P1", "deepest_mm", "contradicts")
+
+    def test_options_override_the_job(self, write_job, capsys):
+        job = write_job(holes=[axis("P1")], min_rate_deg_per_mm=5, psi_bound_deg=90)
+        assert main(["depth", str(job), "--min-rate-deg-per-mm", "0.02", "--psi-bound-deg", "30", "--json"]) == cli.FINE
+        data = json.loads(capsys.readouterr().out)
+        assert (data["settings"]["min_rate_deg_per_mm"], data["settings"]["psi_bound_deg"]) == (0.02, 30)
+        plan = data["holes"][0]["plan"]
+        assert min(plan["min_rate_deg_per_mm"]) >= 0.02 * (1 - 1e-6)
+        assert max(map(abs, plan["psi_deg"])) <= 30 + 1e-9
+
+    def test_a_table_of_holes_needs_no_column_of_depths(self, write_job, tmp_path, capsys):
+        (tmp_path / "holes.csv").write_text("id,x_mm,y_mm,z_mm,i,j,k\nA,5000,300,800,1,0,0\n")
+        assert main(["depth", str(write_job(holes="holes.csv"))]) == cli.FOUND
+        assert "infeasible" in capsys.readouterr().out
+
+    @pytest.mark.parametrize(
+        ("options", "parts"),
+        [
+            (["--legs", "curved"], ("legs", "straight", "free")),
+            (["--psi-bound-deg", "-1"], ("options, psi_bound_deg", "too small", "above 0 [deg]")),
+            (["--min-rate-deg-per-mm", "nan"], ("options, min_rate_deg_per_mm", "finite")),
+            (["--max-twist-deg-per-mm", "0"], ("options, max_twist_deg_per_mm", "too small", "above 0 [deg/mm]")),
+            (["--min-rate-deg-per-mm", "few"], ("min-rate-deg-per-mm", "few")),
+            (["--workers", "0"], ("--workers", "1 or more")),
+        ],
+        ids=lambda value: value[0] if isinstance(value, list) else "",
+    )
+    def test_bad_options(self, options, parts, write_job, capsys):
+        assert main(["depth", str(write_job()), *options]) == cli.BAD_INPUT
+        one_message(capsys, *parts)
+
+    def test_a_plan_still_needs_its_depths(self, write_job, capsys, no_planning):
+        assert main(["plan", str(write_job(holes=[GIVEN, axis("bare")]))]) == cli.BAD_INPUT
+        one_message(capsys, "panel.yaml, line", "holes[1].depth_mm", "hole bare", "is missing", "above 0 [mm]")
 
 
 @pytest.fixture
@@ -184,7 +279,7 @@ def no_planning(monkeypatch):
     def planned(*_, **__):
         pytest.fail("planned although the output cannot be written")
 
-    monkeypatch.setattr("zerorev.planning.plan_job", planned)
+    monkeypatch.setattr("zerorev.jobs.plan", planned)
 
 
 class TestExport:

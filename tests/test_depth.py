@@ -13,6 +13,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.tool import Tool
 from zerorev.search.exact import search
+from zerorev.tool_offset import with_offset
 from zerorev.verify import verify_hole
 
 X = np.array([1.0, 0.0, 0.0])
@@ -28,6 +29,13 @@ FIGURES = [
 
 def hole_at(target_mm, depth=0.01):
     return Hole("h", np.array(target_mm) * 1e-3, X, depth)
+
+
+@pytest.mark.parametrize(("offset_mm", "least_mm"), [(80.0, 56.9), (155.0, 90.8)])
+def test_a_hole_that_the_coarse_look_thinks_deeper_than_it_is_still_has_a_depth(robot, tool, offset_mm, least_mm):
+    """With the threshold, and less offset, all that the coarse look sees at one depth turns out to lack margin."""
+    moved = with_offset(robot, tool, offset_mm * 1e-3)
+    assert deepest_stroke(robot, moved, hole_at((500, 300, 800)), Settings()).depth * 1e3 >= least_mm
 
 
 def plan_of(robot, tool, hole, deepest):

@@ -1,4 +1,4 @@
-"""Reversals as located events, travel, slowest motion, limits; the published figures; the thesis' objective."""
+"""Reversals as located events, travel, slowest motion, limits; the published figures."""
 
 from __future__ import annotations
 
@@ -10,18 +10,9 @@ from scipy.optimize import brentq, minimize_scalar
 
 from oracles import arm as twin
 from zerorev import kinematics
-from zerorev.evaluation import (
-    Evaluation,
-    Objective,
-    Reversals,
-    Travel,
-    evaluate,
-    meets_threshold,
-    thesis_objective,
-)
+from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
@@ -267,31 +258,3 @@ class TestFindings:
         hole = Hole("through", T[:3, 3] - 0.0151 * T[:3, 2], -T[:3, 2], 0.03, psi_zero=T[:3, 1])
         evaluation = evaluate(robot, straight, hole, Profile.straight(0.03, 0, 0, 0), 0)
         assert "jump" in self.kinds(evaluation)
-
-
-class TestObjective:
-    def test_is_equation_4_7_by_hand(self, robot, tool, positions):
-        first = positions[0]
-        held = evaluate(robot, tool, first.hole, first.held_spin, first.branch)
-        best = evaluate(robot, tool, first.hole, first.profile, first.branch)
-        assert thesis_objective(held) == pytest.approx(6 / 6 * 6 / 7 + 52.496 / 2160 / 7, abs=1e-6)
-        assert thesis_objective(best) == pytest.approx(107.119 / 2160 / 7, abs=1e-6)
-
-    def test_each_kind_of_trouble_costs_one(self):
-        def trouble(*kinds):
-            return Evaluation(None, None, tuple(Finding("error", kind, "") for kind in kinds))
-
-        assert thesis_objective(trouble("unreachable")) == 1.0
-        assert thesis_objective(trouble("jump", "limit")) == 2.0
-        assert thesis_objective(trouble("limit", "limit")) == 1.0
-
-    def test_joints_may_weigh_differently(self, robot, tool, positions):
-        score = score_of(robot, tool, positions[1].hole, positions[1].held_spin, 0)
-        assert Reversals()(score) == pytest.approx(5 / 6)
-        assert Reversals((2, 1, 1, 5, 1, 2))(score) == pytest.approx(7 / 12)
-
-    def test_is_a_weighted_sum(self, robot, tool, positions):
-        evaluation = evaluate(robot, tool, positions[1].hole, positions[1].held_spin, 0)
-        mixed = Objective(((0.3, Reversals()), (0.7, Travel())))
-        expected = 0.3 * Reversals()(evaluation.score) + 0.7 * Travel()(evaluation.score)
-        assert mixed(evaluation) == pytest.approx(expected)

@@ -43,8 +43,35 @@ def test_forward_and_inverse_take_any_batch(robot):
 def test_what_is_no_joint_vector_or_no_pose_is_refused_with_its_shape(robot):
     with pytest.raises(InputError, match=r"\(2, 5\).*\(\.\.\., 6\)"):
         kinematics.forward(robot, np.zeros((2, 5)))
+    with pytest.raises(InputError, match=r"\(2, 5\).*\(\.\.\., 6\)"):
+        kinematics.jacobian(robot, Tool.from_mm_deg((0, 0, 0), (0, 0, 0)), np.zeros((2, 5)))
     with pytest.raises(InputError, match=r"\(3, 3\).*\(\.\.\., 4, 4\)"):
         kinematics.inverse(robot, np.eye(3))
+
+
+def test_the_jacobian_is_how_the_tip_moves_by_differences_of_the_forward_kinematics(any_robot):
+    bent = Tool.from_mm_deg((30, -40, 150), (10, -120, 25))
+    joints, step = np.random.default_rng(7).uniform(-3, 3, (20, 6)), 1e-6
+    J = kinematics.jacobian(any_robot, bent, joints)
+    assert J.shape == (20, 6, 6)
+
+    def tcp(joints):
+        return kinematics.forward(any_robot, joints) @ bent.T_flange_tcp
+
+    for i in range(6):
+        ahead, behind = (tcp(joints + sign * step * np.eye(6)[i]) for sign in (1, -1))
+        np.testing.assert_allclose(J[:, :3, i], (ahead - behind)[:, :3, 3] / (2 * step), atol=1e-8)
+        turning = (ahead - behind)[:, :3, :3] / (2 * step) @ np.swapaxes(tcp(joints)[:, :3, :3], 1, 2)
+        np.testing.assert_allclose(J[:, 3:, i], turning[:, [2, 0, 1], [1, 2, 0]], atol=1e-8)
+
+
+def test_the_jacobian_undoes_the_two_rate_fields(robot, tool, position):
+    theta_s, theta_psi = (field[position.branch] for field in kinematics.joint_rates(
+        robot, tool, position.hole, 0.01, position.profile.psi[1]))  # fmt: skip
+    pose = kinematics.tcp_pose(position.hole, 0.01, position.profile.psi[1]) @ np.linalg.inv(tool.T_flange_tcp)
+    J = kinematics.jacobian(robot, tool, kinematics.inverse(robot, pose)[position.branch])
+    np.testing.assert_allclose(J @ theta_s, [-1, 0, 0, 0, 0, 0], atol=1e-12)
+    np.testing.assert_allclose(J @ theta_psi, [0, 0, 0, -1, 0, 0], atol=1e-12)
 
 
 def test_the_thesis_tool_has_a_lever_of_155_mm(robot, tool):

@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from zerorev.depth import deepest_stroke
+from zerorev.jobs import plan_job
 from zerorev.kinematics import forward
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
-from zerorev.planning import plan, plan_job
+from zerorev.planning import plan, plan_deepest
 
 X = np.array([1.0, 0.0, 0.0])
 
@@ -115,6 +117,49 @@ class TestDeeperCorner:
         settings = Settings(blend=4e-3, blend_shortfall=1.1e-3, deepen_corner=True)
         answer = plan(robot, tool, positions[0].hole, settings)
         assert answer.motion.profile.standoff[1] == pytest.approx(-1.1e-3)
+
+
+class TestDeepest:
+    """What becomes of the deepest stroke; that it is the deepest is for the tests of `deepest_stroke`."""
+
+    def test_a_plan_says_how_deep_it_could_go(self, planned, robot, tool, positions):
+        assert planned.deepest == pytest.approx(deepest_stroke(robot, tool, positions[0].hole).depth)
+        assert planned.deepest > planned.hole.depth
+
+    def test_the_deepest_motion_is_planned_and_checked(self, robot, tool, positions):
+        hole = replace(positions[1].hole, profile=positions[1].profile, branch=1)
+        answer = plan_deepest(robot, tool, hole, Settings(min_rate=0.0))
+        assert answer.status == "planned"
+        assert answer.hole.depth == answer.deepest == answer.motion.profile.standoff[0]
+        assert 25e-3 < answer.deepest < 30e-3  # theory §7
+        assert answer.score.reversals == 0
+        assert answer.verified.passed
+        assert answer.findings == ()
+        assert answer.hole.profile is None
+
+    def test_from_a_deeper_corner_the_depth_counts_from_the_target(self, robot, tool, positions):
+        settings = Settings(blend=4e-3, deepen_corner=True)
+        hole = replace(positions[0].hole, branch=4)
+        answer = plan_deepest(robot, tool, hole, settings)
+        below = replace(hole, target=hole.target + 2e-3 * X)
+        assert answer.deepest == pytest.approx(deepest_stroke(robot, tool, below, settings).depth - 2e-3)
+        np.testing.assert_allclose(answer.motion.profile.standoff, [answer.deepest, -2e-3, answer.deepest])
+        assert answer.score.reversals == 0
+        assert answer.verified.passed
+
+    def test_without_a_lever_there_is_none(self, robot, positions):
+        straight = Tool.from_mm_deg((0, 0, 120), (180, 0, 0))
+        answer = plan_deepest(robot, straight, positions[0].hole)
+        assert answer.status == "infeasible"
+        assert answer.deepest == 0.0
+        assert answer.motion is None
+        assert [(f.level, f.kind, f.hole) for f in answer.findings] == [("error", "no_stroke", "position 1")]
+        assert "0.01 deg/mm" in answer.findings[0].message
+
+    def test_out_of_reach_says_so(self, robot, tool):
+        answer = plan_deepest(robot, tool, Hole("far", np.array([1.5, 0.0, 0.8]), X, 0.02))
+        assert answer.deepest == 0.0
+        assert kinds(answer.findings) == ["unreachable"]
 
 
 class TestTurns:

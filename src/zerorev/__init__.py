@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from zerorev.depth import Deepest, deepest_stroke
     from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
     from zerorev.evaluation import evaluate
+    from zerorev.jobs import plan_job
     from zerorev.model.files import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
     from zerorev.model.hole import Hole
     from zerorev.model.job import Job, Settings
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from zerorev.model.profile import Profile
     from zerorev.model.robot import ArmGeometry, JointLimits, Robot
     from zerorev.model.tool import Tool
-    from zerorev.planning import plan, plan_job
+    from zerorev.planning import plan, plan_deepest
     from zerorev.program.export import export
     from zerorev.verify.check import verify_plan
 
@@ -46,6 +47,7 @@ __all__ = [
     "evaluate",
     "export",
     "plan",
+    "plan_deepest",
     "plan_job",
     "read_job",
     "read_plan",
@@ -61,6 +63,7 @@ _HOMES = {
     "depth": ("Deepest", "deepest_stroke"),
     "errors": ("InputError", "NotExportableError", "OutputError", "ZerorevError"),
     "evaluation": ("evaluate",),
+    "jobs": ("plan_job",),
     "model.files": (
         "read_job", "read_plan", "read_robot", "read_tool", "robot_names", "tool_names", "write_plan",
     ),
@@ -70,7 +73,7 @@ _HOMES = {
     "model.profile": ("Profile",),
     "model.robot": ("ArmGeometry", "JointLimits", "Robot"),
     "model.tool": ("Tool",),
-    "planning": ("plan", "plan_job"),
+    "planning": ("plan", "plan_deepest"),
     "program.export": ("export",),
     "verify.check": ("verify_plan",),
 }  # fmt: skip

@@ -5,12 +5,14 @@ Whatever takes long to import is imported by the command that needs it, so that 
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import traceback
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["app", "main"]
 
 FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
+MOST_NUMBERS = 10_000  # of one range on the command line
 
 ENDING = """
 Exit codes:
@@ -59,16 +62,28 @@ Output = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 
 
 @app.command
-def plan(job: Path, /, *, output: Output = None, figures: Path | None = None, json: bool = False) -> int:
+def plan(
+    job: Path,
+    /,
+    *,
+    output: Output = None,
+    figures: Path | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
     """Find the drilling motion of each hole of a job, and check it.
+
+    With -o the finished holes are kept in PLAN.json.part on the way; after an interruption the same command goes on
+    from there.
 
     Args:
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
+        workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
         json: Print the plan as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import plan_to_json, read_job, write_plan
+    from zerorev.model.files import read_job
     from zerorev.model.output import check_file, check_folder
 
     if output is not None:
@@ -79,28 +94,153 @@ def plan(job: Path, /, *, output: Output = None, figures: Path | None = None, js
         check_folder(figures)
     wanted = read_job(job)
 
-    from zerorev.planning import plan_job
+    from zerorev.run import run
 
-    with terminal.progress("planning", len(wanted.holes)) as progress:
-        answer = plan_job(wanted, progress=progress)
+    return FINE if run(wanted, "asked", output, workers, json=json, figures=figures) else FOUND
+
+
+@app.command
+def depth(
+    job: Path,
+    /,
+    *,
+    output: Output = None,
+    legs: Literal["straight", "free"] | None = None,
+    psi_bound_deg: float | None = None,
+    min_rate_deg_per_mm: float | None = None,
+    max_twist_deg_per_mm: float | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
+    """Find the deepest stroke of each hole that has no reversal, and the motion that reaches it, and check that.
+
+    The holes need no depth_mm. What DEPTHS.json holds is checked and exported as a plan is. The finished holes are kept
+    in DEPTHS.json.part on the way; after an interruption the same command goes on from there.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        output: Where to write depths and plans (JSON). Without it the answer is only shown.
+        legs: straight or free, instead of the job's.
+        psi_bound_deg: Spins stay within +- this, instead of the job's bound.
+        min_rate_deg_per_mm: Every joint moves so much at every point, instead of the job's motion threshold.
+        max_twist_deg_per_mm: Greatest twist rate of free legs, instead of the job's.
+        workers: Processes to run it on; by default all cores where the job is large. The answer is the same.
+        json: Print what the file holds as JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+    from zerorev.model.output import check_file
+
     if output is not None:
-        write_plan(answer, output)
-    if figures is not None:
-        from zerorev.report.figures import write_figures
+        check_file(output)
+        _not_over(output, job)
+    options = {
+        "legs": legs,
+        "psi_bound_deg": psi_bound_deg,
+        "min_rate_deg_per_mm": min_rate_deg_per_mm,
+        "max_twist_deg_per_mm": max_twist_deg_per_mm,
+    }
+    given = {key: value for key, value in options.items() if value is not None}
+    wanted = read_job(job, depth_needed=False, options=given)
 
-        with terminal.progress("drawing", len(answer.holes)) as progress:
-            write_figures(answer, figures, progress=progress)
+    from zerorev.run import run
+
+    return FINE if run(wanted, "deepest", output, workers, json=json) else FOUND
+
+
+@app.command
+def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> int:
+    """Show the critical twist rates of each hole and what they foretell, before any search.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
+        json: Print JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+
+    wanted = read_job(job)
+
+    from zerorev.critical import critical_at
+    from zerorev.prediction import predict
+    from zerorev.report import rates as shown
+
+    if psi_deg is not None:
+        at, psi = partial(critical_at, wanted.robot, wanted.tool), math.radians(psi_deg)
+        found = [(hole, each) for hole in wanted.holes for each in at(hole, psi)]
+        if json:
+            terminal.print_json([{"id": hole.id} | shown.rates_data(each) for hole, each in found])
+        else:
+            terminal.out().print(shown.rates_table(wanted, found))
+        return FINE
+    foretold = [predict(wanted.robot, wanted.tool, hole, wanted.settings) for hole in wanted.holes]
     if json:
-        terminal.print_json(plan_to_json(answer))
+        pairs = zip(wanted.holes, foretold, strict=True)
+        terminal.print_json([shown.foretold_data(hole, each) for hole, each in pairs])
     else:
-        _show_plan(answer)
-        if output is not None:
-            terminal.say(f"plan written to {output}")
-        if figures is not None:
-            terminal.say(f"figures written to {figures}")
-        if output is None:
-            terminal.say("no plan written; give -o PLAN.json to keep it")
-    return _verdict(answer)
+        terminal.out().print(shown.foretold_table(wanted, foretold))
+    return FINE
+
+
+@app.command
+def offset(
+    job: Path,
+    /,
+    *,
+    output: Output = None,
+    offsets_mm: str = "0:200:10",
+    angles_deg: str | None = None,
+    figure: Path | None = None,
+    json: bool = False,
+) -> int:
+    """Find how deep each hole goes as the tool is offset from the wrist, and the least offset that drills the job.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        output: Where to write the answer (JSON). Without it the answer is only shown.
+        offsets_mm: Distances of the drill axis from the wrist centre, START:STOP:STEP or a list: 30,60,90.
+        angles_deg: Where the axis lies as seen from the wrist centre, likewise; by default where it lies now.
+        figure: Picture to draw (PNG).
+        json: Print the answer as JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+    from zerorev.model.output import check_file, write_bytes, write_text
+
+    for path in (output, figure):
+        if path is not None:
+            check_file(path)
+            _not_over(path, job)
+    if figure is not None:
+        _need("matplotlib", "matplotlib", "--figure", "figures")
+    offsets = [value / 1e3 for value in _numbers(offsets_mm, "--offsets-mm")]
+    angles = None if angles_deg is None else [math.radians(value) for value in _numbers(angles_deg, "--angles-deg")]
+    wanted = read_job(job)
+
+    from zerorev.model.text import json_text
+    from zerorev.report import offset as shown
+    from zerorev.tool_offset import least_offset, offset_curve
+
+    strokes = len(wanted.holes) * len(offsets) * len(angles or [0])
+    with terminal.progress("deepest strokes", strokes) as progress:
+        curve = offset_curve(wanted.robot, wanted.tool, wanted.holes, wanted.settings, offsets, angles, progress)
+    with terminal.busy("closing in on the least offset"):
+        least = least_offset(wanted, curve)
+    data = shown.offset_data(wanted, curve, least)
+    if output is not None:
+        write_text(output, json_text(data))
+    if figure is not None:
+        from zerorev.report.figures.offset import tool_offset
+        from zerorev.report.figures.style import png
+
+        write_bytes(figure, png(tool_offset(wanted, curve, least)))
+    if json:
+        terminal.print_json(data)
+    else:
+        terminal.out().print(shown.offset_table(wanted, curve, least))
+        terminal.print_lines(shown.offset_lines(wanted, curve, least))
+        for what, path in (("answer", output), ("figure", figure)):
+            if path is not None:
+                terminal.say(f"{what} written to {path}")
+    return FOUND if least is None else FINE
 
 
 @app.command
@@ -135,38 +275,58 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
 
 
 @app.command
-def check(plan: Path, /, *, certify: bool = False, json: bool = False) -> int:
+def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, json: bool = False) -> int:
     """Check a plan anew, from the robot, the tool and the holes that it states.
 
     Args:
         plan: The plan file (JSON).
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
-        json: Print the checked plan as JSON on standard output, and nothing else there.
+        program: With --certify: prove this program (.src), exported from the plan, instead: the rounded numbers that
+            stand in it, lead-in and all. The plan file is left as it is.
+        json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
+            of each hole of the program.
     """
     from zerorev.model.files import plan_to_json, read_plan, write_plan
     from zerorev.model.output import check_file
 
+    if program is not None and not certify:
+        raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
     if certify:
         _need("flint", "python-flint", "--certify", "certify")
+    if certify and program is None:
         check_file(plan)
     answer = read_plan(plan)
+    if program is not None:
+        from zerorev.program.read_back import holes_of, read_program
+
+        written = read_program(program)
+        drilled = holes_of(written, answer)
 
     from zerorev.verify import verify_plan
 
     with terminal.busy("checking"):
         answer = verify_plan(answer)
-    if certify:
+    if program is not None:
+        from zerorev.verify.certificate_program import certify_program
+
+        with terminal.busy("proving"):
+            answer = certify_program(answer, written, drilled)
+    elif certify:
         from zerorev.verify.certificate import certify_plan
 
         with terminal.busy("proving"):
             answer = certify_plan(answer)
         write_plan(answer, plan)
-    if json:
+    if json and program is not None:
+        terminal.print_json(_proofs(plan_to_json(answer), written.name))
+    elif json:
         terminal.print_json(plan_to_json(answer))
     else:
         _show_plan(answer)
-        if certify:
+        if program is not None:
+            terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
+        elif certify:
             terminal.say(f"check and certificates written into {plan}")
     return _verdict(answer, certify=certify)
 
@@ -211,8 +371,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             terminal.complain(str(error).strip())
             # that a plan must not become a program is an answer, not a fault of the question
             return FOUND if isinstance(error, NotExportableError) else BAD_INPUT
-        except KeyboardInterrupt:
-            terminal.complain("interrupted; no file was left half-written")
+        except KeyboardInterrupt as interrupt:
+            terminal.complain(str(interrupt) or "interrupted; no file was left half-written")
             return INTERRUPTED
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # else the interpreter complains at its end
@@ -225,15 +385,39 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _verdict(answer: Plan, *, certify: bool = False) -> int:
-    wrong = any(finding.level == "error" for finding in answer.all_findings)
-    checked = all(hole.verified is not None and hole.verified.passed for hole in answer.holes)
-    certified = all(hole.certificate is not None and hole.certificate.verdict == "certified" for hole in answer.holes)
-    return FINE if checked and (certified or not certify) and not wrong else FOUND
+    from zerorev.report.answer import Shown
+
+    shown = Shown(answer, answer.holes)
+    return FINE if shown.sound and (shown.certified or not certify) else FOUND
+
+
+def _proofs(plan: dict[str, Any], program: str) -> dict[str, Any]:
+    """What is proven of a program's holes, without the plan around it: in a plan file it would pass for the plan's."""
+    holes = [{key: hole[key] for key in ("id", "verified", "certificate")} for hole in plan["holes"]]
+    return {"format": "zerorev.program_certificate/1", "program": program, "holes": holes}
 
 
 def _not_over(output: Path, source: Path) -> None:
     if output.exists() and source.exists() and output.samefile(source):
         raise OutputError(str(output), "it is the file that is read")
+
+
+def _numbers(text: str, where: str) -> list[float]:
+    """Numbers of START:STOP:STEP, the stop among them where a step meets it, or of a list with commas."""
+    accepted = "START:STOP:STEP with a step above 0, or numbers with commas between them"
+    parts = text.split(":")
+    try:
+        numbers = [float(part) for part in (parts if len(parts) == 3 else text.split(","))]
+    except ValueError:
+        raise InputError(f"'{text}' is not numbers", where=where, accepted=accepted) from None
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"'{text}' is not finite", where=where, accepted=accepted)
+    if len(parts) != 3:
+        return numbers
+    start, stop, step = numbers
+    if step <= 0 or stop < start or (stop - start) / step > MOST_NUMBERS:
+        raise InputError(f"'{text}' is no range", where=where, accepted=f"{accepted}, {MOST_NUMBERS} steps at most")
+    return [start + n * step for n in range(int((stop - start) / step + 1e-9) + 1)]
 
 
 def _need(module: str, package: str, option: str, extra: str) -> None:
@@ -246,12 +430,9 @@ def _need(module: str, package: str, option: str, extra: str) -> None:
 
 
 def _show_plan(answer: Plan) -> None:
-    from zerorev.report import tables
+    from zerorev.report.answer import Shown
 
-    terminal.out().print(tables.plan_table(answer))
-    terminal.print_lines(
-        tables.finding_lines((*answer.all_findings, *tables.failed_checks(answer), *tables.open_proofs(answer)))
-    )
+    Shown(answer, answer.holes).show()
 
 
 if __name__ == "__main__":

@@ -1,13 +1,8 @@
-"""What a motion does to the joints: reversals as located events, travel, slowest motion, distance to limits.
-
-A criterion is one small class that turns a `Score` into a number; an `Objective` is their weighted sum, and the
-thesis' objective (eq. 4.7) is one such sum.
-"""
+"""What a motion does to the joints: reversals as located events, travel, slowest motion, distance to limits."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -21,17 +16,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JointPath, joint_path, outward_rates
 
-__all__ = [
-    "NIL_RATE",
-    "Criterion",
-    "Evaluation",
-    "Objective",
-    "Reversals",
-    "Travel",
-    "evaluate",
-    "meets_threshold",
-    "thesis_objective",
-]
+__all__ = ["NIL_RATE", "Evaluation", "evaluate", "meets_threshold", "steady_rates"]
 
 NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_SEGMENT = 200
@@ -93,12 +78,16 @@ def evaluate(
     return Evaluation(path.at_breakpoints(profile, branch), score, ())
 
 
+def steady_rates(score: Score, settings: Settings) -> Array:
+    """Rates of the joints that do not reverse, by the rule of the motion threshold [rad/m], shape (n,) (theory §5)."""
+    rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+    return np.asarray(rates[np.array(score.reversals_per_joint) == 0])
+
+
 def meets_threshold(score: Score, settings: Settings) -> bool:
     """Whether every joint that does not reverse keeps the motion threshold, by the settings' rule (theory §5)."""
-    rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
-    steady = np.array(score.reversals_per_joint) == 0
     # the search keeps the threshold to the last bits of its own sampling, so do not ask for more here
-    return bool((rates[steady] >= settings.min_rate * (1 - 1e-6)).all())
+    return bool((steady_rates(score, settings) >= settings.min_rate * (1 - 1e-6)).all())
 
 
 def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Finding, ...]:
@@ -161,15 +150,19 @@ def _turning_points(
         for i in range(6):
             # NaN, a path that touches a singularity, tells no direction either
             signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
-            before = 0  # the sample at which the joint last moved
-            for n in np.flatnonzero(signs).tolist():
-                if direction[i] and signs[n] != direction[i]:
-                    # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
-                    place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[before], x[n])
-                    standoff = float(start + place * (end - start))
-                    where: LegName = "target" if n == 0 and k == profile.corner else leg
-                    events.append((k + place, Event(i + 1, where, standoff)))
-                direction[i], before = signs[n], n
+            moving = np.flatnonzero(signs)
+            if not moving.size:
+                continue
+            before = np.concatenate([direction[i : i + 1], signs[moving[:-1]]])
+            for turned in np.flatnonzero(before * signs[moving] < 0).tolist():
+                n = int(moving[turned])
+                # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
+                last = moving[turned - 1] if turned else 0
+                place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[last], x[n])
+                standoff = float(start + place * (end - start))
+                where: LegName = "target" if n == 0 and k == profile.corner else leg
+                events.append((k + place, Event(i + 1, where, standoff)))
+            direction[i] = signs[moving[-1]]
     events.sort(key=lambda entry: (entry[0], entry[1].joint))
     return tuple(event for _, event in events), slowest
 
@@ -194,52 +187,3 @@ def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-de
         else:
             low = middle
     return (low + high) / 2
-
-
-class Criterion(Protocol):
-    """One aspect of a motion, as a number between 0 (best) and about 1."""
-
-    def __call__(self, score: Score) -> float:
-        """Cost of the motion."""
-
-
-@dataclass(frozen=True)
-class Reversals:
-    """Weighted share of the joints' reversals: N_rev / 6 where all weigh the same (eq. 4.7, first term)."""
-
-    weights: tuple[float, ...] = (1.0,) * 6
-
-    def __call__(self, score: Score) -> float:
-        """Cost of the motion."""
-        return float(np.dot(self.weights, score.reversals_per_joint)) / float(sum(self.weights))
-
-
-@dataclass(frozen=True)
-class Travel:
-    """Weighted share of six full turns: theta_trv / (6 * 360 deg) (eq. 4.7, second term)."""
-
-    def __call__(self, score: Score) -> float:
-        """Cost of the motion."""
-        return score.travel / (6 * 2 * np.pi)
-
-
-@dataclass(frozen=True)
-class Objective:
-    """A weighted sum of criteria; a motion that cannot be run costs 1 or more.
-
-    Attributes:
-        terms: weight and criterion, each.
-    """
-
-    terms: tuple[tuple[float, Criterion], ...]
-
-    def __call__(self, evaluation: Evaluation) -> float:
-        """Cost of an evaluated motion; each fault, jump and joint over its limit adds 1 where it cannot be run."""
-        if evaluation.score is None:
-            return float(len({finding.kind for finding in evaluation.findings}))
-        score = evaluation.score
-        return sum(weight * criterion(score) for weight, criterion in self.terms)
-
-
-thesis_objective = Objective(((6 / 7, Reversals()), (1 / 7, Travel())))
-"""Thesis eq. 4.7: 6/7 of the weight on reversals, 1/7 on travel, +1 for each of fault, jump and limit."""

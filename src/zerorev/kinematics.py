@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from zerorev.errors import InputError
 from zerorev.kernels import arm as kernels
+from zerorev.kernels.field import rates
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
@@ -19,6 +20,7 @@ __all__ = [
     "critical_rates",
     "forward",
     "inverse",
+    "jacobian",
     "joint_rates",
     "tcp_pose",
     "twist_plane",
@@ -44,9 +46,14 @@ class TwistPlane(NamedTuple):
 
 def twist_plane(robot: Robot, tool: Tool, hole: Hole) -> TwistPlane:
     """The twist plane of a hole drilled by a tool on a robot (theory §1)."""
-    R_base_tcp0, R_tcp_flange = tcp_pose(hole, 0.0, 0.0)[:3, :3], tool.T_flange_tcp[:3, :3].T
-    parts = (hole.target, R_base_tcp0, R_tcp_flange, _wrist_in_tcp(robot, tool))
-    return TwistPlane(*(tuple(np.ravel(part).tolist()) for part in parts))
+    (y0, y1, y2), (d0, d1, d2) = hole.psi_zero.tolist(), hole.direction.tolist()
+    x0, x1, x2 = y2 * d1 - y1 * d2, y0 * d2 - y2 * d0, y1 * d0 - y0 * d1
+    return TwistPlane(
+        target=tuple(hole.target.tolist()),
+        R_base_tcp0=(x0, y0, -d0, x1, y1, -d1, x2, y2, -d2),
+        R_tcp_flange=tuple(tool.T_flange_tcp[:3, :3].T.ravel().tolist()),
+        wrist=tuple(_wrist_in_tcp(robot, tool).tolist()),
+    )
 
 
 def _wrist_in_tcp(robot: Robot, tool: Tool) -> Array:
@@ -108,6 +115,43 @@ def inverse(robot: Robot, T_base_flange: npt.ArrayLike) -> Array:
     return out.reshape(*T.shape[:-2], 8, 6)
 
 
+def jacobian(robot: Robot, tool: Tool, joints: npt.ArrayLike) -> Array:
+    """Geometric Jacobian at the TCP, base frame, shape (..., 6, 6), of controller angles [rad], shape (..., 6).
+
+    Rows: velocity of the TCP [m/rad], then angular velocity of the tool [1]; columns: the joints as the controller
+    counts them.
+
+    Raises:
+        InputError: the last axis is not of six joints.
+    """
+    T = forward(robot, joints)
+    arm, sign = robot.arm, np.array(robot.arm.sign)
+    q = np.asarray(joints, dtype=float) * sign - np.array(arm.offset)
+    c, s = np.cos(q), np.sin(q)
+    zero, one = np.zeros(q.shape[:-1]), np.ones(q.shape[:-1])
+
+    def vector(x: Array, y: Array, z: Array) -> Array:
+        return np.stack([x, y, z], axis=-1)
+
+    up, ahead = vector(zero, zero, one), vector(c[..., 0], s[..., 0], zero)
+    aside = np.cross(up, ahead)  # axes 2 and 3
+    upper_arm = c[..., 1, None] * up + s[..., 1, None] * ahead
+    bend = q[..., 1] + q[..., 2]
+    forearm, below = (
+        np.cos(bend)[..., None] * up + np.sin(bend)[..., None] * ahead,
+        np.cos(bend)[..., None] * ahead - np.sin(bend)[..., None] * up,
+    )
+    shoulder = arm.a1 * ahead + arm.c1 * up
+    elbow = shoulder + arm.c2 * upper_arm
+    wrist = T[..., :3, 3] - arm.c4 * T[..., :3, 2]
+    across = c[..., 3, None] * aside - s[..., 3, None] * below  # axis 5
+    axes = np.stack([up, aside, aside, forearm, across, T[..., :3, 2]], axis=-2)
+    places = np.stack([np.zeros_like(up), shoulder, elbow, wrist, wrist, wrist], axis=-2)
+    tcp = T[..., :3, :3] @ tool.T_flange_tcp[:3, 3] + T[..., :3, 3]
+    columns = np.concatenate([np.cross(axes, tcp[..., None, :] - places), axes], axis=-1) * sign[:, None]
+    return np.asarray(np.swapaxes(columns, -1, -2))
+
+
 def joint_rates(
     robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike
 ) -> tuple[Array, Array]:
@@ -118,11 +162,11 @@ def joint_rates(
     standoff, psi = np.broadcast_arrays(np.asarray(standoff, dtype=float), np.asarray(psi, dtype=float))
     s, p = np.ascontiguousarray(standoff.ravel()), np.ascontiguousarray(psi.ravel())
     plane = twist_plane(robot, tool, hole)
-    fields = np.empty((2, 4, s.size, 6))
+    fields = np.empty((2, 4, 6, s.size))
     for posture in range(4):
-        kernels.rates_along(robot.arm, plane, s, p, posture, fields[0, posture], fields[1, posture])
+        rates(robot.arm, plane, posture, s, p, fields[0, posture], fields[1, posture])
     # the two wrist flips share their rates, but for the sign of joint 5
-    branches = np.repeat(np.moveaxis(fields, 1, 2), 2, axis=2)
+    branches = np.repeat(np.moveaxis(fields, -1, 1), 2, axis=2)
     branches[..., 4] *= [kernels.flip_sign(robot.arm, branch) for branch in range(8)]
     theta_s, theta_psi = branches.reshape(2, *standoff.shape, 8, 6)
     return theta_s, theta_psi

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 
 from zerorev.kernels import arm as kernels
-from zerorev.kinematics import inverse, tcp_pose, twist_plane
+from zerorev.kernels.field import rates
+from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.plan import Motion
@@ -17,7 +19,16 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["JUMP", "JointPath", "choose_turns", "joint_path", "joints_along", "outward_rates", "sample_distances"]
+__all__ = [
+    "JUMP",
+    "JointPath",
+    "choose_turns",
+    "joint_path",
+    "joints_along",
+    "outward_rates",
+    "sample_distances",
+    "turns_within",
+]
 
 JUMP = 0.5  # [rad] a joint step between neighbouring samples that no drilling motion makes: the thesis' B_jump
 FULL_TURN = 2 * np.pi
@@ -70,8 +81,11 @@ def joints_along(robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Ar
 
     The first reachable row lies within (-pi, pi]; rows out of reach are NaN.
     """
-    T_tcp_flange = np.linalg.inv(tool.T_flange_tcp)
-    joints = np.ascontiguousarray(inverse(robot, tcp_pose(hole, standoff, psi) @ T_tcp_flange)[..., branch, :])
+    joints = np.empty((standoff.size, 6))
+    kernels.angles_along(
+        robot.arm, twist_plane(robot, tool, hole), np.ascontiguousarray(standoff, dtype=float),
+        np.ascontiguousarray(psi, dtype=float), branch, joints,
+    )  # fmt: skip
     reached = ~np.isnan(joints[:, 0])
     if reached.any():
         joints[reached] = np.unwrap(joints[reached], axis=0)
@@ -93,21 +107,30 @@ def choose_turns(
         the turns [rad], shape (6,), and the joints (1..6) that no turn brings within their limits; for those the turn
         is the one that goes least far beyond.
     """
-    centre = (low + high) / 2
+    turns, fits = turns_within(low, high, limits, near)
+    return turns, tuple((np.flatnonzero(~fits) + 1).tolist())
+
+
+def turns_within(
+    low: Array, high: Array, limits: JointLimits, near: tuple[float, ...] | None = None
+) -> tuple[Array, npt.NDArray[np.bool_]]:
+    """`choose_turns` for many paths: the turns [rad], and which joints they bring within, each (..., 6).
+
+    Args:
+        low: least angle of each joint along each path [rad], shape (..., 6).
+        high: greatest angle of each joint [rad], shape (..., 6).
+        limits: of the robot.
+        near: see `choose_turns`.
+    """
+    centre, middle = (low + high) / 2, (limits.lower + limits.upper) / 2
     # farthest from the limits is nearest to the middle between them
-    aim = (limits.lower + limits.upper) / 2 if near is None else np.array(near)
-    turns, over = np.zeros(6), []
-    for i in range(6):
-        first = np.ceil((limits.lower[i] - low[i]) / FULL_TURN - 1e-12)
-        last = np.floor((limits.upper[i] - high[i]) / FULL_TURN + 1e-12)
-        wanted = np.round((aim[i] - centre[i]) / FULL_TURN)
-        if first > last:
-            over.append(i + 1)
-            wanted = np.round(((limits.lower[i] + limits.upper[i]) / 2 - centre[i]) / FULL_TURN)
-        else:
-            wanted = np.clip(wanted, first, last)
-        turns[i] = wanted * FULL_TURN
-    return turns, tuple(over)
+    aim = middle if near is None else np.array(near)
+    first = np.ceil((limits.lower - low) / FULL_TURN - 1e-12)
+    last = np.floor((limits.upper - high) / FULL_TURN + 1e-12)
+    fits = first <= last
+    within = np.minimum(np.maximum(np.round((aim - centre) / FULL_TURN), first), last)
+    turns = np.where(fits, within, np.round((middle - centre) / FULL_TURN)) * FULL_TURN
+    return turns, fits
 
 
 def joint_path(
@@ -150,12 +173,11 @@ def outward_rates(
     robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array, twist_rate: float
 ) -> Array:
     """D theta / d s along a leg of slope u [rad/m] at points (N,), read outwards [rad/m], shape (N, 6) (theory §2)."""
-    shape = (standoff.size, 6)
-    theta_s, theta_psi = np.empty(shape), np.empty(shape)
-    kernels.rates_along(
-        robot.arm, twist_plane(robot, tool, hole), np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
-        branch // 2, theta_s, theta_psi,
+    theta_s, theta_psi = np.empty((2, 6, standoff.size))
+    rates(
+        robot.arm, twist_plane(robot, tool, hole), branch // 2, np.ascontiguousarray(standoff),
+        np.ascontiguousarray(psi), theta_s, theta_psi,
     )  # fmt: skip
-    rates = theta_s + twist_rate * theta_psi
-    rates[:, 4] *= kernels.flip_sign(robot.arm, branch)
-    return rates
+    found = (theta_s + twist_rate * theta_psi).T
+    found[:, 4] *= kernels.flip_sign(robot.arm, branch)
+    return found

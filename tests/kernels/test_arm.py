@@ -186,7 +186,8 @@ class TestRates:
         theta_s, theta_psi = kinematics.joint_rates(robot, tool, positions[0].hole, standoff, psi)
         assert theta_s.shape == theta_psi.shape == (5, 3, 8, 6)
         alone = kinematics.joint_rates(robot, tool, positions[0].hole, standoff[3, 0], psi[1])
-        np.testing.assert_array_equal([theta_s[3, 1], theta_psi[3, 1]], alone)
+        # the last bits depend on how many points are worked on at once
+        np.testing.assert_allclose([theta_s[3, 1], theta_psi[3, 1]], alone, rtol=1e-12, atol=1e-12)
 
 
 NEAR = [0.0, *(side * size for size in (1e-15, 1e-12, 1e-9, 1e-6, 1e-3) for side in (1, -1))]

@@ -4,83 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 import pytest
 
 from oracles import legs as twin
+from oracles.starts import ALL_JOINTS, LEAST_RATE, SLOW, TOOL, Start, asked, starts
 from zerorev import kinematics
-from zerorev.kernels import fan, legs, pairs
-from zerorev.model.files import read_robot, read_tool, robot_names
+from zerorev.kernels import field, legs
 from zerorev.model.hole import Hole
 from zerorev.search.exact import Asked
 
-ROBOTS = [read_robot(name) for name in robot_names()]
-TOOL = read_tool("thesis_drill")
-SLOW = bool(numba.config.DISABLE_JIT)
-ALL_JOINTS = np.ones(6, dtype=bool)
-LEAST_RATE = np.deg2rad(1e-4)
-
-
-@pytest.fixture(autouse=True)
-def division_by_zero_gives_infinity():
-    """As in compiled kernels, also where they run as plain Python."""
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        yield
-
-
-def asked(robot, hole, *, min_rate=LEAST_RATE, mean_rule=False, turn_inside=False, limits=True, bound=0.0):
-    low, high = (robot.limits.lower, robot.limits.upper) if limits else (np.full(6, -np.inf), np.full(6, np.inf))
-    return Asked(hole.depth, min_rate, mean_rule, turn_inside, low, high, 2 * np.pi / hole.depth, bound)
-
-
-@dataclass(frozen=True)
-class Start:
-    """One leg out of one target, on the branch that a random joint vector stands on."""
-
-    robot: object
-    hole: Hole
-    branch: int
-    psi_t: float
-    slope: float
-
-    @property
-    def plane(self):
-        return kinematics.twist_plane(self.robot, TOOL, self.hole)
-
-    def traced(self, nodes, branch=None):
-        """Rows of the leg, or None where it cannot be run."""
-        leg = np.empty((legs.ROWS, 6))
-        branch = self.branch if branch is None else branch
-        args = self.robot.arm, self.plane, branch, self.psi_t, self.slope, self.hole.depth, nodes, leg
-        return leg if legs.trace_leg(*args) else None
-
-    def naive(self):
-        return twin.trace(self.robot, TOOL, self.hole, self.branch, self.psi_t, self.slope)
-
-    def at_target(self):
-        """Principal angles, critical rates, and signs of theta_psi."""
-        pose = kinematics.tcp_pose(self.hole, 0.0, self.psi_t) @ np.linalg.inv(TOOL.T_flange_tcp)
-        joints = kinematics.inverse(self.robot, pose)[self.branch]
-        _, theta_psi = kinematics.joint_rates(self.robot, TOOL, self.hole, 0.0, self.psi_t)
-        kappa = kinematics.critical_rates(self.robot, TOOL, self.hole, 0.0, self.psi_t)[self.branch]
-        return joints, kappa, np.sign(theta_psi[self.branch])
-
-
-def starts(count, seed, robots=ROBOTS[:: 2 if SLOW else 1], deepest=0.06):
-    """Random reachable targets, `count` a robot, with slopes of up to 3 deg/mm."""
-    rng, found = np.random.default_rng(seed), []
-    for robot in robots:
-        scale = (robot.arm.c2 + robot.arm.c3) / 0.7
-        taken = 0
-        while taken < count:
-            T = kinematics.forward(robot, rng.uniform(robot.limits.lower, robot.limits.upper)) @ TOOL.T_flange_tcp
-            hole = Hole("random", T[:3, 3], -T[:3, 2], rng.uniform(0.01, deepest) * scale, psi_zero=T[:3, 1])
-            start = Start(robot, hole, int(rng.integers(8)), rng.uniform(-0.3, 0.3), rng.normal() * 15 / scale)
-            if np.isfinite(start.at_target()[1]).all():
-                found.append(start)
-                taken += 1
-    return found
+NOWHERE = np.zeros(6)  # joints at the target, where no limit is looked at
 
 
 class TestTraceLeg:
@@ -172,6 +106,155 @@ class TestJudgeLeg:
         assert margin == 3.0
 
 
+class TestWeighLeg:
+    """The short cut of `judge_leg` after `trace_leg`."""
+
+    @staticmethod
+    def weigh(start, sense, keep, wanted, joints=NOWHERE, nodes=field.BLOCK):
+        """Margin, slack, travel."""
+        at = start.robot.arm, start.plane, start.branch, start.psi_t, start.slope
+        return legs.weigh_leg(*at, (sense, keep, joints), wanted, nodes, np.empty(field.ROOM))
+
+    @pytest.mark.parametrize("mean_rule", [False, True])
+    @pytest.mark.parametrize("turn_inside", [False, True])
+    @pytest.mark.parametrize("share", [1.0, 0.6, 0.2])
+    def test_says_what_is_said_of_the_traced_leg(self, share, mean_rule, turn_inside):
+        rng, compared, willing = np.random.default_rng(11), 0, 0
+        for start in starts(1 if SLOW else 40, seed=10, deepest=0.03):
+            leg, dense = start.traced(field.BLOCK), start.naive()
+            if leg is None or dense is None:
+                assert SLOW or leg is not None or self.weigh(start, *self.any(start))[0] == -np.inf
+                continue
+            h = start.hole.depth / (field.BLOCK - 1)
+            rough = (h**2 * dense.derivative(2)).max()  # of the parabolas, which are not all looked at
+            if rough > 0.05:
+                continue
+            # mostly the joints' own ways, so that many legs will do
+            sense = np.where(rng.random(6) < 0.9, np.sign(dense.rates[0]), rng.choice([-1.0, 1.0], 6))
+            keep = rng.random(6) < share
+            wanted = asked(start.robot, start.hole, min_rate=0.2, mean_rule=mean_rule, turn_inside=turn_inside)
+            joints = start.at_target()[0]
+            margin, slack, travel = legs.judge_leg(leg, sense, keep, joints, start.hole.depth, wanted)
+            found = self.weigh(start, sense, keep, wanted, joints)
+            if margin >= wanted.min_rate or keep.all():
+                np.testing.assert_allclose((found[0], found[2]), (margin, travel), rtol=1e-5, atol=1e-6 + 0.2 * rough)
+                assert found[0] >= margin - 1e-7  # it looks at fewer parabolas
+            else:  # which of two ways a joint lacks more is told from where it sets out
+                assert found[0] < wanted.min_rate
+            if not leg[legs.TURNS].any():  # it comes nearest to a limit at its ends, one of which is known beforehand
+                at_target = min((joints - wanted.lower).min(), (wanted.upper - joints).min())
+                assert min(found[1], at_target) == pytest.approx(slack, abs=1e-6 + 0.2 * rough * start.hole.depth)
+            compared += 1
+            willing += margin >= wanted.min_rate
+        assert compared >= (1 if SLOW else 60)
+        assert SLOW or willing > 10
+
+    @staticmethod
+    def any(start):
+        return np.ones(6), ALL_JOINTS, asked(start.robot, start.hole)
+
+    def test_sees_a_dip_between_two_nodes(self, robot, positions):
+        """The least rate of a coarse leg is that of a fine one to the fourth power of a node's width."""
+        rng, seen = np.random.default_rng(12), 0
+        for _ in range(5 if SLOW else 400):
+            start = Start(robot, positions[0].hole, 4, rng.uniform(-1, 1), rng.uniform(-15, 15))
+            dense = start.naive()
+            if dense is None:
+                continue
+            sense, h = np.sign(dense.rates[0]), start.hole.depth / 12
+            signed = sense * dense.rates
+            i = signed.min(axis=0).argmin()
+            at = signed[:, i].argmin()
+            nearest = np.abs(dense.standoff[at] - h * np.arange(13)).min()
+            if nearest < 0.3 * h or h**3 * dense.derivative(3).max() > 0.5:
+                continue
+            at_nodes = np.interp(h * np.arange(13), dense.standoff, signed[:, i]).min()
+            found = self.weigh(start, sense, ALL_JOINTS, asked(robot, start.hole), nodes=13)[0]
+            dip = at_nodes - signed[at, i]
+            assert found <= at_nodes + 1e-9
+            assert abs(found - signed[at, i]) <= 0.3 * dip + 0.1 * h**3 * dense.derivative(3)[i]
+            seen += 1
+        assert seen >= (0 if SLOW else 3)
+
+    @pytest.mark.parametrize("mean_rule", [False, True])
+    def test_a_joint_that_does_not_move_is_not_asked_to(self, robot, mean_rule):
+        """A hole in the arm's own plane, the spin held: joints 1, 4 and 6 stand still."""
+        joints = np.deg2rad([0.0, -60.0, 80.0, 0.0, 50.0, 0.0])
+        T = kinematics.forward(robot, joints) @ TOOL.T_flange_tcp
+        hole = Hole("any", T[:3, 3], -T[:3, 2], 0.02, psi_zero=T[:3, 1])
+        start = Start(robot, hole, 0, 0.0, 0.0)
+        leg = start.traced(24)
+        still = np.abs(leg[[legs.LEAST_RATE, legs.GREATEST_RATE]]).max(axis=0) < legs.NIL
+        np.testing.assert_array_equal(still, [True, False, False, True, False, True])
+        sense = np.where(leg[legs.TARGET_RATE] > 0, 1.0, -1.0)
+        wanted = asked(robot, hole, mean_rule=mean_rule)
+        expected = legs.judge_leg(leg, sense, ALL_JOINTS, np.zeros(6), hole.depth, wanted)
+        margin, _, travel = self.weigh(start, sense, ALL_JOINTS, wanted, nodes=24)
+        assert margin == pytest.approx(expected[0], rel=1e-4)
+        assert margin > legs.NIL
+        assert travel == pytest.approx(expected[2], rel=1e-5)
+
+    def test_out_of_reach_is_minus_infinity(self, robot):
+        far = Hole("far", np.array([0.85, 0.0, 0.8]), np.array([-1.0, 0.0, 0.0]), 0.2)
+        assert self.weigh(Start(robot, far, 0, 0.0, 0.0), np.ones(6), ALL_JOINTS, asked(robot, far))[0] == -np.inf
+
+
+class TestSift:
+    """What four points of a leg tell of it."""
+
+    @pytest.mark.parametrize("mean_rule", [False, True])
+    @pytest.mark.parametrize("share", [1.0, 0.5])
+    def test_bounds_the_margin_and_estimates_the_rest(self, share, mean_rule):
+        rng, smooth, errors = np.random.default_rng(14), 0, []
+        for start in starts(1 if SLOW else 12, seed=13, deepest=0.03):
+            sense, keep = start.at_target()[2], rng.random(6) < share
+            wanted = asked(start.robot, start.hole, min_rate=0.2, mean_rule=mean_rule)
+            slopes = np.sort(rng.normal(size=31)) * 0.3 / start.hole.depth
+            ceiling, travel, ends = np.empty(31), np.empty(31), np.empty((31, 6))
+            args = start.robot.arm, start.plane, start.branch, start.psi_t, slopes, 31, sense, keep, wanted
+            legs.sift(*args, np.empty(field.ROOM), ceiling, travel, ends)
+            for j in range(0, 31, 10 if SLOW else 1):
+                one = Start(start.robot, start.hole, start.branch, start.psi_t, slopes[j])
+                # 4 points out of 94 intervals are nodes of the fine leg, too: what they see it sees
+                margin, _, moved = TestWeighLeg.weigh(one, sense, keep, wanted, nodes=94)
+                assert ceiling[j] >= margin - 1e-9
+                leg = one.traced(94)
+                if leg is None or ceiling[j] == -np.inf:
+                    continue
+                rates = leg[[legs.LEAST_RATE, legs.GREATEST_RATE]]
+                # a rate that doubles along the leg, or changes its sign, is not smooth to four points
+                if (np.abs(rates).max(axis=0) > 2 * np.abs(rates).min(axis=0) + 0.1).any() or leg[legs.TURNS].any():
+                    continue
+                errors.append(abs(travel[j] / moved - 1))
+                np.testing.assert_allclose(ends[j], leg[legs.END_ANGLE], rtol=legs.SIEVE_ERROR, atol=1e-3)
+                smooth += 1
+        assert smooth >= (0 if SLOW else 100)
+        assert max(errors, default=0.0) < legs.SIEVE_ERROR
+
+    def test_out_of_reach_is_minus_infinity(self, robot):
+        far = Hole("far", np.array([0.85, 0.0, 0.8]), np.array([-1.0, 0.0, 0.0]), 0.2)
+        start = Start(robot, far, 0, 0.0, 0.0)
+        ceiling, travel, ends = np.empty(1), np.empty(1), np.empty((1, 6))
+        args = robot.arm, start.plane, 0, 0.0, np.zeros(1), 1, np.ones(6), ALL_JOINTS, asked(robot, far)
+        legs.sift(*args, np.empty(field.ROOM), ceiling, travel, ends)
+        assert (ceiling[0], travel[0]) == (-np.inf, np.inf)
+
+    def test_many_legs_are_looked_at_as_each_alone(self, robot, positions):
+        """More of them than one workspace holds."""
+        start, count = Start(robot, positions[0].hole, 4, 0.1, 0.0), 61
+        wanted, slopes = asked(robot, start.hole), np.linspace(-20, 20, count)
+        ceiling, travel, ends = np.empty(count), np.empty(count), np.empty((count, 6))
+        at = robot.arm, start.plane, 4, 0.1
+        held, work = (start.at_target()[2], ALL_JOINTS, wanted), np.empty(field.ROOM)
+        legs.sift(*at, slopes, count, *held, work, ceiling, travel, ends)
+        alone = np.empty(1), np.empty(1), np.empty((1, 6))
+        for j in range(0, count, 7):
+            legs.sift(*at, slopes[j : j + 1], 1, *held, work, *alone)
+            np.testing.assert_allclose(ceiling[j], alone[0][0], rtol=1e-12)
+            np.testing.assert_allclose(travel[j], alone[1][0], rtol=1e-12)
+            np.testing.assert_allclose(ends[j], alone[2][0], rtol=1e-9, atol=1e-12)
+
+
 class TestSlopeCandidates:
     def candidates(self, kappa, keep, side, psi_t=0.0, bound=0.0, steepest=100.0):
         wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), steepest, bound)
@@ -207,31 +290,6 @@ class TestSlopeCandidates:
     def test_a_joint_that_spin_does_not_move_has_no_critical_rate(self):
         slopes = self.candidates([np.inf, np.nan, -np.inf, 2, -2, 1], [True] * 6, 1.0)
         assert slopes[0] == 2
-
-
-class TestTurns:
-    def test_are_all_the_choices_there_are(self):
-        rng = np.random.default_rng(6)
-        for robot in ROBOTS:
-            hole = Hole("any", np.array([0.5, 0.0, 0.8]), np.array([1.0, 0.0, 0.0]), 0.05)
-            wanted = asked(robot, hole)
-            for _ in range(3 if SLOW else 30):
-                principal = rng.uniform(-np.pi, np.pi, 6)
-                expected = twin.choices_of_turns(principal, wanted)
-                assert pairs.turn_choices(principal, wanted) == len(expected)
-                found = np.empty((len(expected), 6))
-                for choice in range(len(expected)):
-                    pairs.take_turns(principal, wanted, choice, found[choice])
-                np.testing.assert_allclose(sorted(found.tolist()), sorted(expected), atol=1e-12)
-
-
-def best_leg(start, side, wanted, mode=legs.TRAVEL, keep=ALL_JOINTS, nodes=97):
-    """(least cost, its slope, greatest margin) and the twin's judgement of many slopes on that side."""
-    joints, kappa, sense = start.at_target()
-    best = np.empty(3)
-    held = (side * sense, keep, joints)
-    legs.best_leg(start.robot.arm, start.plane, start.branch, start.psi_t, side, kappa, held, wanted, mode, nodes, best)
-    return best
 
 
 def brute_force(start, side, wanted, count=200 if SLOW else 2000, keep=ALL_JOINTS):
@@ -282,7 +340,7 @@ class TestBestLeg:
         feasible = 0
         for one in sides:
             start, wanted = one.start, one.wanted
-            cost, slope, _ = best_leg(start, one.side, wanted, nodes=25 if SLOW else 97)
+            cost, slope, _ = start.best_leg(one.side, wanted, nodes=24 if SLOW else 96)
             if np.isfinite(one.least_travel()):
                 feasible += 1
                 assert cost <= one.least_travel() * (1 + 1e-4)
@@ -303,7 +361,7 @@ class TestBestLeg:
             greatest = one.tried.margin[runs].max(initial=-np.inf)
             if greatest < SPARE_RATE:
                 continue
-            cost, _, margin = best_leg(one.start, one.side, one.wanted, legs.GREATEST_MARGIN)
+            cost, _, margin = one.start.best_leg(one.side, one.wanted, legs.GREATEST_MARGIN)
             assert -cost == margin
             assert margin >= greatest * (1 - 5e-3) - SPARE_RATE / 10
             feasible += 1
@@ -314,7 +372,7 @@ class TestBestLeg:
         for one in sides:
             will_do = (one.tried.margin >= SPARE_RATE) & (one.tried.slack >= SPARE_ANGLE)
             if will_do.any():
-                cost, slope, _ = best_leg(one.start, one.side, one.wanted, legs.PLUNGE_ROTATION)
+                cost, slope, _ = one.start.best_leg(one.side, one.wanted, legs.PLUNGE_ROTATION)
                 assert cost == abs(slope)
                 assert cost <= np.abs(one.tried.slope[will_do]).min() * (1 + 1e-6) + 1e-9
 
@@ -339,96 +397,7 @@ class TestBestLeg:
         out = np.empty(legs.MAX_SLOPES)
         candidates = out[: legs.slope_candidates(kappa, ALL_JOINTS, side, start.psi_t, wanted, out)]
         assert judged(candidates, wanted).least_travel(wanted.min_rate) == np.inf
-        cost, slope, margin = best_leg(start, side, wanted, nodes=33)
+        cost, slope, margin = start.best_leg(side, wanted, nodes=33)
         assert np.isfinite(cost)
         assert margin >= wanted.min_rate
         assert slope == pytest.approx(fine.slope[fine.margin.argmax()], abs=3e-3 * wanted.steepest)
-
-
-class TestBestPair:
-    def pair(self, start, keep=ALL_JOINTS, mode=legs.TRAVEL, **how):
-        out = np.empty(4)
-        wanted = asked(start.robot, start.hole, **how)
-        args = start.robot.arm, start.plane, start.branch, start.psi_t, keep, wanted, wanted.unlimited(), mode
-        pairs.best_pair(*args, 25 if SLOW else 97, out)
-        return out
-
-    def test_is_the_best_leg_of_either_side(self, robot, positions):
-        for psi in np.deg2rad([-2.0, 0.0, 3.0]):
-            start = Start(robot, positions[0].hole, 4, psi, 0.0)
-            wanted = asked(robot, start.hole, limits=False)
-            sides = [best_leg(start, side, wanted, nodes=25 if SLOW else 97) for side in (1.0, -1.0)]
-            out = self.pair(start)
-            assert out[pairs.VALUE] == pytest.approx(sides[0][0] + sides[1][0], rel=1e-12)
-            assert out[pairs.SLOPE_ABOVE] == sides[0][1]
-            assert out[pairs.SLOPE_BELOW] == sides[1][1]
-
-    def test_brackets_the_critical_rates_of_the_joints_to_keep(self, sides):
-        keep = np.array([True, True, False, True, False, True])
-        found = 0
-        for start in [one.start for one in sides[::2]]:
-            out = self.pair(start, keep)
-            if np.isfinite(out[pairs.VALUE]):
-                kappa = start.at_target()[1][keep]
-                assert out[pairs.SLOPE_ABOVE] > kappa.max() > kappa.min() > out[pairs.SLOPE_BELOW]
-                found += 1
-        assert found >= 1
-
-    def test_out_of_reach_there_is_none(self, robot):
-        far = Hole("far", np.array([3.0, 0.0, 0.8]), np.array([1.0, 0.0, 0.0]), 0.02)
-        out = self.pair(Start(robot, far, 0, 0.0, 0.0))
-        assert out[pairs.VALUE] == np.inf
-        assert out[pairs.MARGIN] == -np.inf
-
-
-class TestFan:
-    """The legs that every set of joints is looked up in."""
-
-    def slopes(self, kappa, *, between=True, psi_t=0.0, bound=0.0):
-        wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), 100.0, bound)
-        out, critical = np.empty(fan.MAX_FAN), np.zeros(fan.MAX_FAN, dtype=bool)
-        count = fan.fan_slopes(np.array(kappa), between, psi_t, wanted, out, critical)
-        return out[:count], critical[:count]
-
-    def test_slopes_rise_from_steepest_to_steepest_and_mark_the_critical_rates(self):
-        slopes, critical = self.slopes([5, -8, 3, 0.1, -2, 7])
-        assert (np.diff(slopes) >= 0).all()
-        assert slopes[0] == pytest.approx(-100)
-        assert slopes[-1] == pytest.approx(100)
-        np.testing.assert_allclose(slopes[critical], [-8, -2, 0.1, 3, 5, 7])
-        assert 0.0 in slopes
-
-    def test_without_the_slopes_between_the_outermost_critical_rates_are_enough(self):
-        slopes, critical = self.slopes([5, -8, 3, 0.1, -2, 7], between=False)
-        np.testing.assert_allclose(slopes[critical], [-8, 7])
-        assert not ((slopes > -8) & (slopes < 7)).any()
-
-    def test_slopes_stay_within_the_bound_on_the_spin(self):
-        slopes, _ = self.slopes([5, -8, 3, 0.1, -2, 7], psi_t=0.8, bound=1.0)
-        assert np.abs(0.8 + slopes * 0.05).max() == pytest.approx(1.0)
-
-    def test_there_is_room_for_all(self):
-        assert self.slopes([5, -8, 3, 0.1, -2, 7])[0].size <= fan.MAX_FAN
-
-    @pytest.mark.parametrize("weights", [(1.0,) * 6, (3.0, 1.0, 1.0, 2.0, 1.0, 0.5)])
-    def test_pairs_are_judged_as_their_dense_samples(self, weights):
-        compared = 0
-        for start in starts(1 if SLOW else 20, seed=9, deepest=0.03):
-            other = Start(start.robot, start.hole, start.branch, start.psi_t, -start.slope)
-            rows, dense = (start.traced(97), other.traced(97)), (start.naive(), other.naive())
-            if any(leg is None for leg in (*rows, *dense)):
-                continue
-            rates = np.concatenate([leg.rates for leg in dense])
-            if np.abs(rates).min() < 0.05 or max(leg.derivative(1).max() for leg in dense) > 3e3:
-                continue
-            turned = dense[0].turns + dense[1].turns + (dense[0].rates[0] * dense[1].rates[0] > 0)
-            wanted = asked(start.robot, start.hole, min_rate=1e3)
-            slopes = start.slope, -start.slope
-            cost, lack, travel = fan.judge_pair(*rows, *slopes, np.array(weights), wanted, legs.TRAVEL)
-            assert cost == pytest.approx(np.dot(weights, turned))
-            moved = sum(np.abs(np.diff(leg.angles, axis=0)).sum() for leg in dense)
-            assert travel == pytest.approx(moved, rel=1e-4)
-            slowest = np.abs(rates).min(axis=0)[turned == 0].min(initial=np.inf)
-            assert lack == pytest.approx(max(0.0, 1e3 - slowest), abs=2e-2)
-            compared += 1
-        assert compared >= (0 if SLOW else 1)

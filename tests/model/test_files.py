@@ -131,6 +131,7 @@ def test_the_defaults_of_the_file_are_those_of_the_settings(tmp_path: Path) -> N
 def test_every_setting_arrives(tmp_path: Path) -> None:
     text = CSV_JOB + (
         "name: panel\nmin_rate_deg_per_mm: 0\nmin_rate_rule: mean\npsi_bound_deg: 180\nobjective: margin\n"
+        "legs: free\nmax_twist_deg_per_mm: 12\n"
         "reversal_weights: [1, 2, 3, 4, 5, 6]\nnear_joints_deg: [0, -90, 90, 0, 0, 180]\nblend_mm: 1\n"
         "blend_shortfall_mm: 0.4\ndeepen_corner: true\nlead_in_mm: 0\nspindle_rpm: 3000\n"
         "tool: {tcp_mm: [0, 0, 100], rpy_deg: [0, 0, 0]}\npsi_reference: [0, 0, 1]\n"
@@ -138,7 +139,8 @@ def test_every_setting_arrives(tmp_path: Path) -> None:
     job = job_of(tmp_path, text.replace("tool: thesis_drill\n", ""), holes=CSV)
     assert job.name == "panel"
     assert job.settings == Settings(
-        min_rate=0.0, min_rate_rule="mean", psi_bound=np.pi, objective="margin", reversal_weights=(1, 2, 3, 4, 5, 6),
+        min_rate=0.0, min_rate_rule="mean", psi_bound=np.pi, legs="free", max_twist=np.deg2rad(12e3),
+        objective="margin", reversal_weights=(1, 2, 3, 4, 5, 6),
         near_joints=tuple(np.deg2rad([0, -90, 90, 0, 0, 180])), blend=1e-3, blend_shortfall=4e-4, deepen_corner=True,
         lead_in=0.0, spindle_rpm=3000,
     )  # fmt: skip
@@ -304,7 +306,7 @@ def numbers(shape: tuple[int, ...] | int, low: float, high: float) -> st.SearchS
 
 @st.composite
 def plans(draw: st.DrawFn) -> Plan:
-    holes = []
+    holes, strokes = [], draw(st.sampled_from(["asked", "deepest"]))
     for name in draw(st.lists(st.text("abc1 ü", min_size=1, max_size=4), min_size=1, max_size=3, unique=True)):
         z = draw(numbers(3, -1, 1).filter(lambda v: np.linalg.norm(v) > 0.1))
         across = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
@@ -312,6 +314,8 @@ def plans(draw: st.DrawFn) -> Plan:
         profile = Profile(np.array([1, 0.4, 0, 0.7, 1]) * depth, draw(numbers(5, -7, 7)))
         asked = draw(st.sampled_from([{}, {"branch": 3}, {"profile": profile}, {"profile": profile, "branch": 5}]))
         answer = HolePlan(Hole(name, draw(numbers(3, -3, 3)), z, depth, across, **asked), "infeasible", 0.1234567)
+        if strokes == "deepest" or draw(st.booleans()):
+            answer = replace(answer, deepest=draw(st.floats(0, 0.5)))
         counts, rates = tuple(draw(st.lists(st.integers(0, 3), min_size=6, max_size=6))), numbers(6, 1e-3, 50)
         if draw(st.booleans()):
             answer = replace(
@@ -326,9 +330,10 @@ def plans(draw: st.DrawFn) -> Plan:
             )  # fmt: skip
         holes.append(answer)
     frame = transform(rotation_rpy(*draw(numbers(3, -1.5, 1.5))), draw(numbers(3, -3, 3)))
-    how = Settings(psi_bound=np.pi, near_joints=(0.1,) * 6, blend_shortfall=1e-4, spindle_rpm=3000.0)
+    how = Settings(psi_bound=np.pi, near_joints=(0.1,) * 6, blend_shortfall=1e-4, spindle_rpm=3000.0, legs="free")
     robot = files.read_robot(draw(st.sampled_from(files.robot_names())))
-    return Plan(robot, files.read_tool("thesis_drill"), how, tuple(holes), frame, "ü", (Finding("info", "x", "y"),))
+    said = (Finding("info", "x", "y"),)
+    return Plan(robot, files.read_tool("thesis_drill"), how, tuple(holes), frame, "ü", said, strokes)
 
 
 def differences(a: Any, b: Any, path: str = "plan") -> list[str]:
@@ -354,6 +359,16 @@ def test_a_plan_comes_back_and_is_written_the_same_again(plan: Plan, tmp_path: P
     files.write_plan(back, second)
     assert first.read_bytes() == second.read_bytes()
     assert json.loads(first.read_text(encoding="utf-8")) == files.plan_to_json(plan)
+
+
+def test_a_plan_of_before_there_were_depths_and_free_legs_still_reads(tmp_path: Path) -> None:
+    path = tmp_path / "plan.json"
+    data = files.plan_to_json(small_plan())
+    for key in ("legs", "max_twist_deg_per_mm"):
+        del data["settings"][key]
+    del data["holes"][0]["deepest_mm"]
+    path.write_text(json.dumps(data), encoding="utf-8")
+    assert not differences(files.read_plan(path), small_plan())
 
 
 def small_plan() -> Plan:
@@ -541,13 +556,13 @@ def test_output_that_cannot_be_written_leaves_nothing(tmp_path: Path, monkeypatc
 
 def test_the_published_schemas_are_current(tmp_path: Path) -> None:
     files.write_schemas(tmp_path)
-    for name in ("job.schema.json", "plan.schema.json"):
+    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json"):
         committed = (ROOT / "docs/schemas" / name).read_text(encoding="utf-8")
         assert committed == (tmp_path / name).read_text(encoding="utf-8"), "run zerorev.model.files.write_schemas"
 
 
 def test_every_published_field_says_what_is_accepted() -> None:
-    for name in ("job.schema.json", "plan.schema.json"):
+    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json"):
         schema = json.loads((ROOT / "docs/schemas" / name).read_text(encoding="utf-8"))
         for form in (schema, *schema["$defs"].values()):
             assert all(field.get("description") for field in form["properties"].values())

@@ -9,7 +9,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.motion import joints_along
 from zerorev.program.export import export
-from zerorev.program.lead_in import find_lead_in
+from zerorev.program.lead_in import KEPT, find_lead_in
 
 
 def along(plan, hole, back):
@@ -69,7 +69,7 @@ def turning(published, planned, plan_of):
 def test_shortened_where_a_joint_would_turn_the_other_way(before_mm, turning, krl):
     plan = turning(before_mm * 1e-3)
     found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 5e-3)
-    assert found.length * 1e3 == pytest.approx(before_mm, abs=1.1e-3)
+    assert found.length * 1e3 == pytest.approx(KEPT * before_mm, abs=1.1e-3)
     (finding,) = found.findings
     assert (finding.level, finding.kind, finding.hole) == ("warning", "lead_in", "position 3")
     assert "A1 would turn the other way" in finding.message
@@ -103,7 +103,7 @@ def test_shortened_at_a_joint_limit(published, plan_of, spoil):
     upper[3] = limit
     robot = spoil(plan.robot, limits=spoil(limits, upper=upper))
     found = find_lead_in(robot, plan.tool, hole, 5e-3)
-    assert found.length * 1e3 == pytest.approx(2.0, abs=1.1e-3)
+    assert found.length * 1e3 == pytest.approx(KEPT * 2.0, abs=1.1e-3)
     assert "A4 reaches its limit" in found.findings[0].message
 
 
@@ -115,7 +115,7 @@ def test_shortened_at_the_edge_of_reach(planned, plan_of):
     )
     found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 0.4)
     assert "the arm is out of reach" in found.findings[0].message
-    edge = along(plan, plan.holes[0], found.length + np.array([0.0, 2e-6]))
+    edge = along(plan, plan.holes[0], found.length / KEPT + np.array([0.0, 2e-6]))
     assert np.isfinite(edge[0]).all()
     assert np.isnan(edge[1]).all()
 

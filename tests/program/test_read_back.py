@@ -1,15 +1,20 @@
 """Holes in any direction on tilted parts: the file's poses, rotations and axis values are the plan's."""
 
 import itertools
+import re
+from decimal import Decimal
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from zerorev.errors import InputError
 from zerorev.kinematics import forward, tcp_pose
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.motion import joint_path
 from zerorev.program.export import export
+from zerorev.program.read_back import read_krl, read_program
 
 DIRECTIONS = {
     "up": (0, 0, 1),
@@ -64,9 +69,11 @@ def test_any_direction_on_any_part(direction, spins, krl, kuka, drill, planned, 
         T_base_part = np.eye(4)
         T_base_part[:3, :3], T_base_part[:3, 3] = R, p
         plan = plan_of(hole_plan, T_base_part=T_base_part, lead_in=2e-3, feed_retract=5e-4, feed_plunge=1e-4)
-        ptp, *moves = krl.read(export(plan).text).moves
+        text = export(plan).text
+        ptp, *moves = krl.read(text).moves
         check_poses(plan, hole_plan, ptp, moves)
         check_angles(moves, profile)
+        check_the_reader(text, ptp, moves)
 
 
 def check_poses(plan, hole_plan, ptp, moves):
@@ -94,6 +101,21 @@ def check_poses(plan, hole_plan, ptp, moves):
     )
     np.testing.assert_allclose(reached[:3, 3], lead_in[:3, 3] * 1e3, rtol=0, atol=1e-3)
     assert angle(reached[:3, :3], lead_in[:3, :3] @ AS_WRITTEN) < 1e-3
+
+
+def check_the_reader(text, ptp, moves):
+    """What the product reads back is what the other reader reads."""
+    program = read_krl(text)
+    (hole,) = program.holes
+    assert [float(angle) for angle in hole.axes_deg] == list(ptp.axes)
+    for move, other in zip(hole.moves, moves, strict=True):
+        assert [float(number) for number in move.point_mm_deg] == [other.values[name] for name in "XYZABC"]
+        assert float(move.blend_mm) == (other.state["$APO.CDIS"] if other.blended else 0)
+        assert (float(move.feed_m_s), move.line) == (other.state["$VEL.CP"], other.line)
+    for name, frame in (("$TOOL", program.tool_mm_deg), ("$BASE", program.base_mm_deg)):
+        R = rotation(*(float(angle) for angle in frame[3:]))
+        np.testing.assert_allclose(ptp.state[name][:3, :3], R, rtol=0, atol=1e-12)
+        assert list(ptp.state[name][:3, 3]) == [float(length) for length in frame[:3]]
 
 
 def check_angles(moves, profile):
@@ -135,3 +157,116 @@ def test_more_than_three_breakpoints(krl, published, planned, plan_of):
     assert [move.state["$VEL.CP"] for move in moves] == [0.005] * 4 + [0.02] * 2
     check_poses(plan, hole, ptp, moves)
     check_angles(moves, profile)
+
+
+# --- the reader of the product ----------------------------------------------------------------------------------------
+
+GOLDEN = Path(__file__).parents[1] / "golden"
+
+
+@pytest.mark.parametrize("path", sorted(GOLDEN.glob("*.src")), ids=lambda path: path.stem)
+def test_golden_programs(path, krl):
+    program, other = read_program(path), krl.read(path.read_text())
+    assert program.name == other.name
+    assert [len(hole.moves) for hole in program.holes] == [len(moves) - 1 for moves in other.holes()]
+    assert [f"Hole {k} of {len(program.holes)}: {hole.id}" for k, hole in enumerate(program.holes, 1)] == [
+        fold for fold in other.folds if fold.startswith("Hole")
+    ]
+
+
+@pytest.fixture(scope="module")
+def text(published, plan_of):
+    return export(plan_of(published(1), published(2)), version="test").text
+
+
+LIN = "LIN {X 500.0000,Y 300.0000,Z 800.0000,A 0.0000,B 0.0000,C 5.9388}"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("$VEL.CP=", "WAIT SEC 1\n$VEL.CP=", "'WAIT SEC 1' is not a statement that zerorev writes"),
+        ("$VEL.CP=", "$OUT[1]=TRUE\n$VEL.CP=", "not a statement"),
+        ("$VEL.CP=", "$OV_PRO=50\n$VEL.CP=", r"\$OV_PRO is not a variable that zerorev sets"),
+        ("$VEL.CP=", "$VEL.CP=-", "a number above 0"),
+        ("$VEL.CP=", "; $VEL.CP=", r"a LIN before \$VEL.CP is set"),
+        ("$APO.CDIS=", "; $APO.CDIS=", r"a LIN before \$APO.CDIS is set"),
+        ("$APO.CDIS=1.0000", "$APO.CDIS=0.0000", "a number above 0"),
+        ("$ORI_TYPE=#VAR", "$ORI_TYPE=#JOINT", "accepted: #VAR"),
+        ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "accepted: #BASE"),
+        ("$ORI_TYPE=#VAR\n", "", r"a move before \$ORI_TYPE is set"),
+        ("$TOOL=", "$TOOL={FRAME: X 1,Y 0,Z 0,A 0,B 0,C 0}\n$TOOL=", r"\$TOOL is set a second time"),
+        ("$VEL.CP=", "$BASE={FRAME: X 1,Y 0,Z 0,A 0,B 0,C 0}\n$VEL.CP=", r"\$BASE is set a second time"),
+        ("BAS (#VEL_PTP", "$ADVANCE=3\nBAS (#INITMOV,0 )\nBAS (#VEL_PTP", "INITMOV would undo"),
+        (LIN, LIN.replace("LIN", "LIN_REL"), "not a statement"),
+        (LIN, LIN.replace("Y 300.0000,", ""), "a number for each of X Y Z A B C"),
+        (LIN, LIN.replace("Y 300.0000", "Y 3e2"), "a number for each"),
+        (LIN, LIN.replace("Y 300.0000", "Y nan"), "a number for each"),
+        (LIN, LIN.replace("X 500.0000,Y 300.0000", "Y 300.0000,X 500.0000"), "in this order"),
+        (LIN, LIN.replace("Y 300.0000", "Y \u0663"), "not ASCII"),
+        (LIN + " C_DIS", LIN + " C_VEL", "not a statement"),
+        ("PTP {", "PTP {AXIS: A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {", "a PTP that is not the first move of a hole"),
+        ("PTP {", LIN + "\nPTP {", "a LIN before the PTP of its hole"),
+        (";FOLD Hole 1 of 2: position 1", "; position 1", "a PTP that is not the first move"),
+        ("\nEND\n", "\n", "not complete"),
+        ("\nEND\n", "\nEND\nHALT\n", "a statement after END"),
+        ("DEF ", "DEF other ( )\nDEF ", "a second program"),
+        ("EXT BAS", "$ADVANCE=3 $ADVANCE=4", "not a statement|a number above 0"),
+    ],
+)
+def test_what_zerorev_does_not_write_is_refused(old, new, what, text):
+    assert old in text
+    with pytest.raises(InputError, match=what) as caught:
+        read_krl(text.replace(old, new, 1), "here.src")
+    assert re.match(r"here\.src, line \d+: ", str(caught.value))
+
+
+def test_the_line_of_a_fault(text):
+    lines = text.split("\n")
+    at = next(k for k, line in enumerate(lines) if line.startswith("LIN"))
+    lines[at] = lines[at].replace("LIN", "CIRC")
+    with pytest.raises(InputError, match=f"line {at + 1}: 'CIRC"):
+        read_krl("\n".join(lines))
+
+
+def test_the_last_move_of_a_hole_must_be_an_exact_stop(text):
+    with pytest.raises(InputError, match=r"the last move of hole position 1 \(line \d+\) is blended"):
+        read_krl(text.replace(" ; end of the stroke", " C_DIS ; end of the stroke", 1))
+
+
+def test_a_hole_without_moves(text):
+    without = "\n".join(line for line in text.split("\n") if not line.startswith("LIN"))
+    with pytest.raises(InputError, match="hole position 1 ends without a PTP and a LIN"):
+        read_krl(without)
+    first = text.index(";FOLD Hole")
+    with pytest.raises(InputError, match="the program has no holes"):
+        read_krl(text[:first] + "END\n")
+
+
+@pytest.mark.parametrize("content", [b"", b"\x00\x01", b"\xff\xfe", b"{}", b"DEF a ( )\nEND\n"])
+def test_no_program_at_all(content, tmp_path):
+    path = tmp_path / "a.src"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"a\.src"):
+        read_program(path)
+    with pytest.raises(InputError, match="no such file"):
+        read_program(tmp_path / "b.src")
+
+
+def test_numbers_are_the_decimals_that_are_printed(text):
+    move = read_krl(text.replace("Y 300.0000", "Y 300.0001", 1)).holes[0].moves[0]
+    assert move.point_mm_deg[1] == Decimal("300.0001")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_spoiled_text_is_read_or_refused_and_never_a_fault(seed, text):
+    rng = np.random.default_rng(seed)
+    refused = 0
+    for _ in range(200):
+        at, length = int(rng.integers(len(text))), int(rng.integers(4))
+        put = "".join(rng.choice(list("0.-,{}; \nAXC$=#LIN"), int(rng.integers(3))))
+        try:
+            read_krl(text[:at] + put + text[at + length :])
+        except InputError:
+            refused += 1
+    assert refused > 50

@@ -60,7 +60,7 @@ def test_the_state_of_the_controller(krl, published, plan_of):
             assert (move.state["$IPO_MODE"], move.state["$ORI_TYPE"], move.state["$ADVANCE"]) == ("#BASE", "#VAR", 3)
             assert min(move.state["$VEL.ORI1"], move.state["$VEL.ORI2"]) >= 200
         entry, corner, _ = hole[1:]
-        # at the entry it is clipped to half the lead-in, which position 3's published spins let run 0.57 mm only
+        # at the entry it is clipped to half the lead-in, which position 3's published spins let run 0.43 mm only
         assert corner.state["$APO.CDIS"] == 1.0
         assert 0 < entry.state["$APO.CDIS"] <= 1.0
         assert [move.state["$VEL.CP"] for move in hole[1:]] == [0.004, 0.004, 0.015]

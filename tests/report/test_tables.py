@@ -42,8 +42,8 @@ def test_verdicts(published):
     assert "yes" in text
     assert "FAILED" in text
     failed = [Finding("error", "verification", "x", "position 2")]
-    assert tables.failed_checks(plan) == failed
-    assert tables.failed_checks(replace(plan, findings=tuple(failed))) == []
+    assert tables.hole_findings(replace(plan.holes[1], findings=())) == failed
+    assert tables.hole_findings(replace(plan.holes[1], findings=tuple(failed))) == failed
 
 
 def test_where_all_joints_reverse_there_is_no_slowest(make_plan):

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from flint import arb, arb_mat, arb_series, ctx
+from flint import arb, arb_mat, ctx
 
-from zerorev.verify.certificate_arm import angles, body_at, posture_of, rates, setting_of
-from zerorev.verify.certificate_path import motion_of
+from zerorev.verify.certificate_arm import Setting, angles, body_at, flange_at, posture_of, rates
+from zerorev.verify.certificate_legs import planned_motion
 from zerorev.verify.certificate_piece import ball_arithmetic, enclose
 
 
@@ -71,13 +71,26 @@ def many_bits():
         yield
 
 
+def joints_at(setting, arc, t):
+    pose, flange = arc.at(t)
+    return angles(setting, body_at(setting, pose), flange)
+
+
+def rates_at(setting, arc, t):
+    """Rates of the six joints, per metre of path."""
+    ctx.cap = 1
+    pose, twist = arc.around(arb(t), arb(1))
+    return [rate[0] / arc.length for rate in rates(setting, body_at(setting, pose), twist)]
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_poses_and_rates(robot, drill, random_hole, seed):
     hole, profile, start = random_hole(robot, drill, seed)
-    setting = setting_of(robot.arm, drill, hole, posture_of(robot.arm, start))
-    s, psi, slope = arb(0.4 * hole.depth), arb(float(profile.psi[1]) * 0.6), arb(3.7)
-    body = body_at(setting, s, psi)
-    joints = angles(setting, body)
+    setting = Setting(robot.arm, posture_of(robot.arm, start))
+    leg = planned_motion(robot.arm, drill, hole, profile).legs[0]
+    t, spin = 0.625, float(profile.psi[1])  # from psi = 0 at the start
+    s, psi, slope = arb(0.375 * hole.depth), arb(spin) * t, -arb(spin) / hole.depth
+    joints = joints_at(setting, leg, t)
 
     flange, axes = links(robot.arm, joints)
     T = drill.T_flange_tcp
@@ -96,34 +109,49 @@ def test_poses_and_rates(robot, drill, random_hole, seed):
     twist = velocity + [slope * z[k] for k in range(3)]
     J = [cross(axis, [flange[k, 3] - point[k] for k in range(3)]) + axis for axis, point in axes]
     expected = arb_mat(J).transpose().solve(arb_mat([[x] for x in twist]))
-    for joint, rate in enumerate(rates(setting, body, arb(1), slope)):
+    for joint, inwards in enumerate(rates_at(setting, leg, t)):
+        rate = -inwards
         assert abs(rate - expected[joint, 0]) < 1e-10 * max(1.0, float(abs(rate)))
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_series_are_the_derivatives(robot, drill, random_hole, seed):
+@pytest.mark.parametrize("part", ["leg", "blend"])
+def test_series_are_the_derivatives(robot, drill, random_hole, seed, part):
     """The rates integrate to the joints: angles at two ends of a small step, and the series between them."""
     hole, profile, start = random_hole(robot, drill, seed)
-    setting = setting_of(robot.arm, drill, hole, posture_of(robot.arm, start))
-    ctx.cap = 12
-    s0, slope, step = arb(0.5 * hole.depth), arb(2.5), arb(1e-5)
-    psi0 = arb(float(profile.psi[1]))
-    body = body_at(setting, arb_series([s0, 1]), arb_series([psi0, slope]))
-    series = rates(setting, body, arb_series([1]), arb_series([slope]))
-    first, last = (angles(setting, body_at(setting, s0 + x, psi0 + slope * x)) for x in (arb(0), step))
+    setting = Setting(robot.arm, posture_of(robot.arm, start))
+    motion = planned_motion(robot.arm, drill, hole, profile, 1e-3)
+    arc = motion.legs[0] if part == "leg" else motion.blends[0].arc
+    begin, step = 0.25, 2.0**-10
+    ctx.cap = 20
+    pose, twist = arc.around(arb(begin), arb(1))
+    series = rates(setting, body_at(setting, pose), twist)
+    first, last = (joints_at(setting, arc, t) for t in (begin, begin + step))
     for a, b, rate in zip(first, last, series, strict=True):
-        turned = sum((rate[k] * step ** (k + 1) / (k + 1) for k in range(12)), arb(0))
+        turned = sum((rate[k] * arb(step) ** (k + 1) / (k + 1) for k in range(20)), arb(0))
         assert abs(b - a - turned) < 1e-25
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_forwards_and_back(robot, drill, random_hole, seed):
+    """Forward kinematics against the other link-by-link product."""
+    _, _, start = random_hole(robot, drill, seed)
+    joints = [arb(float(angle)) for angle in start]
+    origin, columns = flange_at(robot.arm, joints)
+    expected, _ = links(robot.arm, joints)
+    for k in range(3):
+        assert abs(origin[k] - expected[k, 3]) < 1e-50
+        assert all(abs(columns[j][k] - expected[k, j]) < 1e-50 for j in range(3))
 
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("pieces", [1, 4, 64])
 def test_a_piece_holds_every_rate_on_it(robot, drill, random_hole, seed, pieces):
     hole, profile, start = random_hole(robot, drill, seed)
-    setting = setting_of(robot.arm, drill, hole, posture_of(robot.arm, start))
+    setting = Setting(robot.arm, posture_of(robot.arm, start))
     rng = np.random.default_rng(seed)
     enclosed = 0
-    for arc in (*(motion := motion_of(profile, 1e-3, 0.0)).legs, motion.blends[0].arc):
+    for arc in (*(motion := planned_motion(robot.arm, drill, hole, profile, 1e-3)).legs, motion.blends[0].arc):
         k = int(rng.integers(pieces))
         begin, end = k / pieces, (k + 1) / pieces
         piece = enclose(setting, arc, begin, end)
@@ -131,15 +159,12 @@ def test_a_piece_holds_every_rate_on_it(robot, drill, random_hole, seed, pieces)
             continue
         enclosed += 1
         for t in (begin, end, *rng.uniform(begin, end, 20).tolist()):  # not NumPy's, which make floats of balls
-            (_, s1, s2), (_, p1, p2) = arc.standoff, arc.psi
-            body = body_at(setting, *arc.at(t))
-            found = rates(setting, body, (s1 + 2 * t * s2) / arc.length, (p1 + 2 * t * p2) / arc.length)
-            for joint, rate in enumerate(found):
+            for joint, rate in enumerate(rates_at(setting, arc, t)):
                 assert float(piece.low[joint]) <= rate <= float(piece.high[joint])
                 for at, ends in ((begin, piece.first), (end, piece.last)):
                     if t == at:
                         assert float(ends[0, joint]) <= rate <= float(ends[1, joint])
-        first, last = (angles(setting, body_at(setting, *arc.at(t))) for t in (begin, end))
+        first, last = (joints_at(setting, arc, t) for t in (begin, end))
         for a, b, turned in zip(first, last, piece.turned, strict=True):
             assert (
                 turned.overlaps(b - a) or turned.overlaps(b - a + 2 * arb.pi()) or turned.overlaps(b - a - 2 * arb.pi())
@@ -151,9 +176,8 @@ def test_no_piece_across_a_singularity(kuka, drill, random_hole):
     """Axis 5 goes through 0: the enclosures cannot be finite, however small the piece."""
     hole, profile, start = random_hole(kuka, drill, 0, joints_deg=(10, -80, 60, 20, 0.0005, 30), depth=0.01)
     posture = posture_of(kuka.arm, start)
-    setting = setting_of(kuka.arm, drill, hole, posture)
-    arc = motion_of(profile, 0.0, 0.0).legs[0]
-    assert enclose(setting, arc, 0.0, 1.0) is None
+    arc = planned_motion(kuka.arm, drill, hole, profile).legs[0]
+    assert enclose(Setting(kuka.arm, posture), arc, 0.0, 1.0) is None
 
 
 def test_postures(robot):

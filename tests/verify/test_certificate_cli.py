@@ -121,3 +121,58 @@ def test_plan_files_from_before_certificates(plan_file):
     del data["holes"][0]["certificate"]
     plan_file.write_text(json.dumps(data))
     assert read_plan(plan_file).holes[0].certificate is None
+
+
+# --- a program read back ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def program_file(plan_file):
+    path = plan_file.with_name("program.src")
+    assert main(["export", str(plan_file), "-o", str(path)]) == cli.FINE
+    return path
+
+
+def test_a_program_is_certified_as_read_back(plan_file, program_file, capsys):
+    before = plan_file.read_text()
+    assert main(["check", "--certify", str(plan_file), "--program", str(program_file)]) == cli.FINE
+    out, _ = capsys.readouterr()
+    assert "yes, certified" in out
+    assert f"the certificates are of {program_file} as it was read back; {plan_file} is left as it is" in out
+    assert plan_file.read_text() == before
+
+
+def test_what_is_proven_of_a_program_as_json(plan_file, program_file, capsys):
+    assert main(["check", "--certify", str(plan_file)]) == cli.FINE
+    capsys.readouterr()
+    assert main(["check", "--certify", "--json", str(plan_file), "--program", str(program_file)]) == cli.FINE
+    shown = json.loads(capsys.readouterr().out)
+    assert (shown["format"], shown["program"]) == ("zerorev.program_certificate/1", "program")
+    (hole,), (planned,) = shown["holes"], json.loads(plan_file.read_text())["holes"]
+    assert (hole["id"], hole["verified"]["passed"], hole["certificate"]["verdict"]) == ("P1", True, "certified")
+    for own, legs in zip(
+        hole["certificate"]["min_rate_deg_per_mm"], planned["certificate"]["min_rate_deg_per_mm"], strict=True
+    ):
+        assert own == pytest.approx(legs, rel=1e-2, abs=1e-5)
+    assert hole["certificate"]["pieces"] > planned["certificate"]["pieces"]  # the lead-in is in it
+
+
+def test_a_program_edited_by_hand_is_refuted(plan_file, program_file, capsys):
+    text = program_file.read_text()
+    program_file.write_text(text.replace("LIN {X 500.0000", "LIN {X 500.0100"))
+    assert main(["check", "--certify", str(plan_file), "--program", str(program_file)]) == cli.FOUND
+    out, _ = capsys.readouterr()
+    assert "yes, refuted" in out
+    assert "no point of the program lies at the plan's breakpoint at stand-off 0 mm" in " ".join(out.split())
+
+
+def test_a_program_that_cannot_be_read(plan_file, program_file, capsys):
+    program_file.write_text(program_file.read_text().replace("$ORI_TYPE=#VAR", "$ORI_TYPE=#JOINT"))
+    assert main(["check", "--certify", str(plan_file), "--program", str(program_file)]) == cli.BAD_INPUT
+    assert "$ORI_TYPE=#JOINT (accepted: #VAR)" in " ".join(capsys.readouterr().err.split())
+    assert main(["check", "--certify", str(plan_file), "--program", "none.src"]) == cli.BAD_INPUT
+
+
+def test_a_program_is_not_read_for_nothing(plan_file, program_file, capsys):
+    assert main(["check", str(plan_file), "--program", str(program_file)]) == cli.BAD_INPUT
+    assert "--certify beside it" in capsys.readouterr().err

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import zerorev.verify.certificate as certificate
+import zerorev.verify.certificate_proof as proof
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.verify.certificate import certify_motion
@@ -77,7 +77,7 @@ def test_a_spin_beyond_all_measure(kuka, drill, modest):
 
 
 def test_it_says_when_it_gives_up(prove, modest, monkeypatch):
-    monkeypatch.setattr(certificate, "PIECES", 20)
+    monkeypatch.setattr(proof, "PIECES", 20)
     answer = prove(modest(1))
     assert answer.verdict == "undecided"
     assert answer.reasons[0].startswith("given up after 20 pieces on the ")

@@ -9,8 +9,9 @@ from numba.core import event
 
 __all__ = ["kernel"]
 
-# No fastmath anywhere: it would make isnan(nan) false, and NaN is how a kernel says "no such pose".
-kernel = numba.njit(cache=True, nogil=True, error_model="numpy")
+# No fastmath: it would make isnan(nan) false, and NaN is how a kernel says "no such pose".
+# Contracting a * b + c into one operation is another matter: it is faster, more precise, and keeps NaN.
+kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
 
 
 class _SayOnce(event.Listener):

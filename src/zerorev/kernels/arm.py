@@ -144,8 +144,44 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
 
 
 @kernel
+def solve_at(arm, plane, standoff, psi, posture, cs):  # type: ignore[no-untyped-def]
+    """`solve_posture` at one point of the twist plane.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        standoff: s [m].
+        psi: spin [rad].
+        posture: 0..3.
+        cs: out, shape (6, 2): cosines and sines of the model angles.
+
+    Returns:
+        whether the pose can be reached in this posture, and the lever of the spin: from the drill axis to the wrist
+        centre, base frame [m].
+    """
+    c, s = np.cos(psi), np.sin(psi)
+    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
+    # the tcp frame turned by psi about its z axis: columns a, b, z
+    a0, a1, a2 = c * x0 + s * y0, c * x1 + s * y1, c * x2 + s * y2
+    b0, b1, b2 = c * y0 - s * x0, c * y1 - s * x1, c * y2 - s * x2
+    f00, f01, f02, f10, f11, f12, f20, f21, f22 = plane.R_tcp_flange
+    R = (
+        a0 * f00 + b0 * f10 + zx * f20, a0 * f01 + b0 * f11 + zx * f21, a0 * f02 + b0 * f12 + zx * f22,
+        a1 * f00 + b1 * f10 + zy * f20, a1 * f01 + b1 * f11 + zy * f21, a1 * f02 + b1 * f12 + zy * f22,
+        a2 * f00 + b2 * f10 + zz * f20, a2 * f01 + b2 * f11 + zz * f21, a2 * f02 + b2 * f12 + zz * f22,
+    )  # fmt: skip
+    # wrist centre: the tip, and the lever of the spin turned with it
+    w0, w1, w2 = plane.wrist
+    rx, ry, rz = a0 * w0 + b0 * w1, a1 * w0 + b1 * w1, a2 * w0 + b2 * w1
+    along = standoff + w2
+    t0, t1, t2 = plane.target
+    wx, wy, wz = t0 + along * zx + rx, t1 + along * zy + ry, t2 + along * zz + rz
+    return solve_posture(arm, R, wx, wy, wz, posture, cs), rx, ry, rz
+
+
+@kernel
 def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # type: ignore[no-untyped-def]
-    """The two rate fields at one point of the twist plane, for sin(q5) > 0 (theory §1).
+    """The two rate fields at one point of the twist plane, for sin(q5) > 0 (theory §1); `field.rates` is for many.
 
     Args:
         arm: `ArmGeometry`.
@@ -160,25 +196,10 @@ def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # 
     Returns:
         whether the pose can be reached in this posture.
     """
-    c, s = np.cos(psi), np.sin(psi)
-    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
-    # the tcp frame turned by psi about its z axis: columns a, b, z
-    a0, a1, a2 = c * x0 + s * y0, c * x1 + s * y1, c * x2 + s * y2
-    b0, b1, b2 = c * y0 - s * x0, c * y1 - s * x1, c * y2 - s * x2
-    f00, f01, f02, f10, f11, f12, f20, f21, f22 = plane.R_tcp_flange
-    R = (
-        a0 * f00 + b0 * f10 + zx * f20, a0 * f01 + b0 * f11 + zx * f21, a0 * f02 + b0 * f12 + zx * f22,
-        a1 * f00 + b1 * f10 + zy * f20, a1 * f01 + b1 * f11 + zy * f21, a1 * f02 + b1 * f12 + zy * f22,
-        a2 * f00 + b2 * f10 + zz * f20, a2 * f01 + b2 * f11 + zz * f21, a2 * f02 + b2 * f12 + zz * f22,
-    )  # fmt: skip
-    # wrist centre: the tip, and the lever r of the spin turned with it
-    w0, w1, w2 = plane.wrist
-    rx, ry, rz = a0 * w0 + b0 * w1, a1 * w0 + b1 * w1, a2 * w0 + b2 * w1
-    along = standoff + w2
-    t0, t1, t2 = plane.target
-    wx, wy, wz = t0 + along * zx + rx, t1 + along * zy + ry, t2 + along * zz + rz
-    if not solve_posture(arm, R, wx, wy, wz, posture, cs):
+    reached, rx, ry, rz = solve_at(arm, plane, standoff, psi, posture, cs)
+    if not reached:
         return False
+    _, _, zx, _, _, zy, _, _, zz = plane.R_base_tcp0
     joint_velocity(arm, cs, zx, zy, zz, 0.0, 0.0, 0.0, theta_s)
     joint_velocity(arm, cs, zy * rz - zz * ry, zz * rx - zx * rz, zx * ry - zy * rx, zx, zy, zz, theta_psi)
     return True
@@ -277,20 +298,20 @@ def forward(arm, joints, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rates_along(arm, plane, standoff, psi, posture, theta_s, theta_psi):  # type: ignore[no-untyped-def]
-    """`twist_field` at many points, for sin(q5) > 0; NaN rows where the posture cannot reach.
+def angles_along(arm, plane, standoff, psi, branch, out):  # type: ignore[no-untyped-def]
+    """Controller angles of one branch within (-pi, pi] at many points of the twist plane.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         standoff: s [m], shape (N,).
         psi: spin [rad], shape (N,).
-        posture: 0..3.
-        theta_s: out, shape (N, 6) [rad/m].
-        theta_psi: out, shape (N, 6) [1].
+        branch: 0..7.
+        out: out, shape (N, 6); NaN rows where the branch cannot reach.
     """
     cs = np.empty((6, 2))
     for n in range(standoff.shape[0]):
-        if not twist_field(arm, plane, standoff[n], psi[n], posture, cs, theta_s[n], theta_psi[n]):
-            theta_s[n] = np.nan
-            theta_psi[n] = np.nan
+        if solve_at(arm, plane, standoff[n], psi[n], branch // 2, cs)[0]:
+            controller_angles(arm, cs, branch % 2 == 1, out[n])
+        else:
+            out[n] = np.nan

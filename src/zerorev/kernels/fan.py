@@ -1,7 +1,6 @@
 """Fans: the legs out of every spin of a grid, followed once, and all pairs of them (theory §3).
 
-A fan answers the coarse questions: which spins can keep a set of joints, and which pair of legs, whatever reverses,
-has the fewest reversals.
+A fan answers which pair of legs, whatever reverses, has the fewest reversals.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
 """
@@ -11,14 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
-from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
+from zerorev.kernels.arm import controller_angles, twist_field
+from zerorev.kernels.field import ROOM
 from zerorev.kernels.legs import (
     END_ANGLE,
     GEOMETRIC_SLOPES,
-    GREATEST_ANGLE,
     GREATEST_MARGIN,
     GREATEST_RATE,
-    LEAST_ANGLE,
     LEAST_RATE,
     NIL,
     PLUNGE_ROTATION,
@@ -27,9 +25,9 @@ from zerorev.kernels.legs import (
     TARGET_RATE,
     TURNS,
     joint_travel,
-    judge_leg,
     trace_leg,
 )
+from zerorev.kernels.pairs import turns_fit
 
 EVEN_SLOPES = 48
 MAX_FAN = 7 + 2 * GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN + EVEN_SLOPES
@@ -37,12 +35,11 @@ COMPASS_STEPS = 40
 
 
 @kernel
-def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-untyped-def]
+def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-def]
     """Slopes of the legs that are followed out of one point of the target line, whatever joints are to be kept.
 
     Args:
         kappa: critical rates at the target [rad/m], shape (6,).
-        between: whether slopes between the critical rates are wanted, too.
         psi_t: spin at the target [rad].
         asked: `Asked`, for the steepest slope and the bound on the spin.
         out: out, shape (MAX_FAN,): rising slopes.
@@ -68,10 +65,9 @@ def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-
     anchors = np.sort(anchors[:pieces])
     marked = np.zeros(MAX_FAN)
     for p in range(pieces):
-        if p == 0 or between or p == pieces - 1:
-            out[count], marked[count] = anchors[p], 1.0
-            count += 1
-        if between and p < pieces - 1:
+        out[count], marked[count] = anchors[p], 1.0
+        count += 1
+        if p < pieces - 1:
             for j in range(SLOPES_BETWEEN):
                 out[count] = anchors[p] + (anchors[p + 1] - anchors[p]) * (j + 0.5) / SLOPES_BETWEEN
                 count += 1
@@ -80,13 +76,12 @@ def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-
         out[count] = anchors[0] - (anchors[0] - low) * share
         out[count + 1] = anchors[pieces - 1] + (high - anchors[pieces - 1]) * share
         count += 2
-    if between:
-        for j in range(EVEN_SLOPES):
-            out[count] = low + (high - low) * (j + 0.5) / EVEN_SLOPES
-            count += 1
-        if low < 0.0 < high:  # the spin held
-            out[count] = 0.0
-            count += 1
+    for j in range(EVEN_SLOPES):
+        out[count] = low + (high - low) * (j + 0.5) / EVEN_SLOPES
+        count += 1
+    if low < 0.0 < high:  # the spin held
+        out[count] = 0.0
+        count += 1
     order = np.argsort(out[:count])
     out[:count] = out[:count][order]
     for j in range(count):
@@ -95,21 +90,21 @@ def fan_slopes(kappa, between, psi_t, asked, out, critical):  # type: ignore[no-
 
 
 @kernel
-def follow(arm, plane, psi, between, asked, nodes, branches, fan):  # type: ignore[no-untyped-def]
+def follow(arm, plane, psi, asked, nodes, branches, fan):  # type: ignore[no-untyped-def]
     """Follow a fan of legs out of every spin of a grid, once for both wrist flips of a posture and for any `keep`.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
-        between: see `fan_slopes`.
         asked: `Asked`.
         nodes: points on a leg.
         branches: whether to look at a branch, shape (8,).
         fan: out, `Fan`.
     """
     cs = np.empty((6, 2))
-    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
+    theta_s, theta_psi, principal, kappa = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
+    work = np.empty(ROOM)
     fan.counts[:] = 0
     fan.fits[:] = False
     for posture in range(4):
@@ -120,103 +115,17 @@ def follow(arm, plane, psi, between, asked, nodes, branches, fan):  # type: igno
                 continue
             slopes = fan.slopes[posture, n]
             for i in range(6):
-                fan.kappa[posture, n, i] = -theta_s[i] / theta_psi[i]
-                fan.sense[posture, n, i] = 1.0 if theta_psi[i] > 0.0 else -1.0
-            fan.sense[posture, n, 4] *= flip_sign(arm, 2 * posture)
-            count = fan_slopes(fan.kappa[posture, n], between, psi[n], asked, slopes, fan.critical[posture, n])
+                kappa[i] = -theta_s[i] / theta_psi[i]
+            count = fan_slopes(kappa, psi[n], asked, slopes, fan.critical[posture, n])
             fan.counts[posture, n] = count
             for j in range(count):
                 leg = fan.legs[posture, n, j]
-                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], asked.depth, nodes, leg):
+                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], asked.depth, nodes, work, leg):
                     continue
                 for flip in range(2):
                     if branches[2 * posture + flip]:
                         controller_angles(arm, cs, flip == 1, principal)
                         fan.fits[posture, n, j, flip] = turns_fit(leg, leg, flip == 1, principal, asked)
-
-
-@kernel
-def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
-    """Whether some turns bring both of two legs within the limits.
-
-    Args:
-        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
-        b: see a.
-        flipped: whether the legs were followed on the other wrist flip, whose joint 5 moves the other way.
-        principal: angles at the target within (-pi, pi], shape (6,).
-        asked: `Asked`.
-    """
-    for i in range(6):
-        low, high = min(a[LEAST_ANGLE, i], b[LEAST_ANGLE, i]), max(a[GREATEST_ANGLE, i], b[GREATEST_ANGLE, i])
-        if flipped and i == 4:
-            low, high = -high, -low
-        first = np.ceil((asked.lower[i] - principal[i] - low) / (2.0 * np.pi))
-        if not principal[i] + high + 2.0 * np.pi * first <= asked.upper[i]:
-            return False
-    return True
-
-
-@kernel
-def look(fan, keep, asked, out):  # type: ignore[no-untyped-def]
-    """A coarse look along the target line: what `best_pair` would find from the legs of the fan alone.
-
-    Args:
-        fan: `Fan`, from `follow`.
-        keep: whether a joint must keep its direction, shape (6,).
-        asked: `Asked`.
-        out: out, shape (8, K, 2): least travel over pairs that keep the margin (inf where none does), and the greatest
-            margin of a pair (-inf where none can be run).
-    """
-    sense, anywhere = np.empty(6), np.zeros(6)
-    best = np.empty((2, 2, 2))  # flip; side; least travel, greatest margin
-    near = np.empty((2, 2))  # flip; margin and travel of the candidate before
-    out[:, :, 0] = np.inf
-    out[:, :, 1] = -np.inf
-    for posture in range(4):
-        for n in range(fan.counts.shape[1]):
-            count = fan.counts[posture, n]
-            if count == 0:
-                continue
-            kappa = fan.kappa[posture, n]
-            best[:, :, 0] = np.inf
-            best[:, :, 1] = -np.inf
-            for k in range(2):
-                side = 1.0 - 2.0 * k
-                nearest = -np.inf
-                for i in range(6):
-                    sense[i] = side * fan.sense[posture, n, i]
-                    if keep[i] and np.isfinite(kappa[i]):
-                        nearest = max(nearest, side * kappa[i])
-                if nearest == -np.inf:
-                    nearest = 0.0
-                near[:, 0] = -np.inf
-                for m in range(count):
-                    j = m if k == 0 else count - 1 - m  # away from the critical rates
-                    if side * fan.slopes[posture, n, j] < nearest:
-                        continue
-                    fits = fan.fits[posture, n, j]
-                    if not (fits[0] or fits[1]):
-                        near[:, 0] = -np.inf
-                        continue
-                    margin, _slack, travel = judge_leg(
-                        fan.legs[posture, n, j], sense, keep, anywhere, asked.depth, asked
-                    )
-                    for flip in range(2):
-                        if not fits[flip]:
-                            near[flip, 0] = -np.inf
-                            continue
-                        best[flip, k, 1] = max(best[flip, k, 1], margin)
-                        if margin >= asked.min_rate:
-                            # the end of the interval lies between this candidate and the one before
-                            if -np.inf < near[flip, 0] < asked.min_rate:
-                                share = (margin - asked.min_rate) / (margin - near[flip, 0])
-                                end = travel + share * (near[flip, 1] - travel)
-                                best[flip, k, 0] = min(best[flip, k, 0], end)
-                            best[flip, k, 0] = min(best[flip, k, 0], travel)
-                        near[flip, 0], near[flip, 1] = margin, travel
-            for flip in range(2):
-                out[2 * posture + flip, n, 0] = best[flip, 0, 0] + best[flip, 1, 0]
-                out[2 * posture + flip, n, 1] = min(best[flip, 0, 1], best[flip, 1, 1])
 
 
 @kernel
@@ -336,14 +245,14 @@ def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  
         return np.inf, np.inf, np.inf
     if max(abs(a), abs(b)) > asked.steepest:
         return np.inf, np.inf, np.inf
-    cs = np.empty((6, 2))
+    cs, work = np.empty((6, 2)), np.empty(ROOM)
     theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
     if not twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi):
         return np.inf, np.inf, np.inf
     controller_angles(arm, cs, branch % 2 == 1, principal)
     if not (
-        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, legs[0])
-        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, legs[1])
+        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, work, legs[0])
+        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, work, legs[1])
         and turns_fit(legs[0], legs[1], False, principal, asked)
     ):
         return np.inf, np.inf, np.inf

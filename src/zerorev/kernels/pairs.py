@@ -1,4 +1,7 @@
-"""The best pair of legs out of one point of the target line, and the turns of the joints there (theory §2, §3).
+"""The best pair of legs out of one point of the target line, and along that line (theory §2, §3).
+
+Both wrist flips of a posture share their legs, so it is a posture that is searched; the flips differ in what their
+limits allow.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
 """
@@ -9,19 +12,29 @@ import numpy as np
 
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
+from zerorev.kernels.field import ROOM
 from zerorev.kernels.legs import (
+    GOLDEN,
     GREATEST_ANGLE,
     GREATEST_MARGIN,
     LEAST_ANGLE,
+    MAX_SLOPES,
     PLUNGE_ROTATION,
     ROWS,
+    SIEVE_ERROR,
     TRAVEL,
     best_leg,
+    most_gained,
+    sift,
+    slope_candidates,
     trace_leg,
 )
 
 # columns of what is returned
-VALUE, SLOPE_ABOVE, SLOPE_BELOW, MARGIN = range(4)
+VALUE, SLOPE_ABOVE, SLOPE_BELOW, MARGIN, BRANCH, SPIN = range(6)
+COLUMNS = 6
+
+HOPELESS = 1e6  # what a pair that will not do is worth, at least: the more it lacks, the more
 
 
 @kernel
@@ -46,76 +59,101 @@ def take_turns(principal, asked, choice, at_target):  # type: ignore[no-untyped-
 
 
 @kernel
-def best_pair(arm, plane, branch, psi_t, keep, asked, unlimited, mode, nodes, out):  # type: ignore[no-untyped-def]
+def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, thorough, work, out):  # type: ignore[no-untyped-def]
     """The best two legs out of one point of the target line, one on each side of the critical rates.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
-        branch: 0..7.
+        posture: 0..3.
         psi_t: spin at the target [rad].
         keep: whether a joint must keep its direction, shape (6,).
         asked: `Asked`.
         unlimited: the same without joint limits.
+        branches: whether to look at a branch, shape (8,).
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
-        out: out, shape (4,): value to be least (inf where no pair will do), slope above, slope below, and the greatest
-            margin that both legs can have (-inf where one cannot be run at all).
+        bound: a value that is known to be had elsewhere: where limits aside none is better, they are not looked at.
+        thorough: whether to look within the limits, too, where no pair will do without: the margin is then that within
+            them, and as continuous along the target line as it is.
+        work: room for `fields`.
+        out: out, shape (COLUMNS,): value to be least (inf where no pair will do), slope above, slope below, the
+            greatest margin that both legs can have (-inf where one cannot be run at all), branch, psi_t.
     """
-    cs = np.empty((6, 2))
-    theta_s, theta_psi = np.empty(6), np.empty(6)
-    kappa, sense, principal, at_target = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
-    out[:] = np.inf, np.nan, np.nan, -np.inf
-    if not twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi):
+    kappa, sense, at_target, principal = np.empty(6), np.empty(6), np.empty(6), np.empty((2, 6))
+    choices = np.zeros(2, dtype=np.int64)
+    out[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi_t
+    if not set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal, choices):
         return
-    controller_angles(arm, cs, branch % 2 == 1, principal)
-    five = flip_sign(arm, branch)
-    for i in range(6):
-        if np.isnan(theta_psi[i]):
-            return
-        kappa[i] = -theta_s[i] / theta_psi[i]
-        sense[i] = 1.0 if theta_psi[i] > 0.0 else -1.0
-    sense[4] *= five
 
     # The limits seldom bind: look without them first, and keep that answer if some choice of turns brings it within.
-    _pair_within(arm, plane, branch, psi_t, principal, sense, kappa, keep, unlimited, mode, nodes, out)
-    if out[MARGIN] == -np.inf or not turn_choices(principal, asked):
-        out[:] = np.inf, np.nan, np.nan, -np.inf
+    held = (sense, kappa, keep, at_target)
+    _pair_within(arm, plane, 2 * posture, psi_t, held, unlimited, mode, nodes, work, out)
+    if out[MARGIN] == -np.inf:
+        return
+    if (out[VALUE] == np.inf and not thorough) or np.inf > out[VALUE] >= bound:
+        # what lacks margin without limits lacks it within them, and what is no better is no better within them
+        out[BRANCH] = 2.0 * posture if choices[0] else 2.0 * posture + 1.0
         return
     if out[VALUE] < np.inf:
         legs = np.empty((2, ROWS, 6))
-        trace_leg(arm, plane, branch, psi_t, out[SLOPE_ABOVE], asked.depth, nodes, legs[0])
-        trace_leg(arm, plane, branch, psi_t, out[SLOPE_BELOW], asked.depth, nodes, legs[1])
-        fits = True
-        for i in range(6):
-            least = principal[i] + min(legs[0, LEAST_ANGLE, i], legs[1, LEAST_ANGLE, i])
-            greatest = principal[i] + max(legs[0, GREATEST_ANGLE, i], legs[1, GREATEST_ANGLE, i])
-            first = np.ceil((asked.lower[i] - least) / (2.0 * np.pi))
-            fits = fits and greatest + 2.0 * np.pi * first <= asked.upper[i]
-        if fits:
-            return
-    out[:] = np.inf, np.nan, np.nan, -np.inf
-    for choice in range(turn_choices(principal, asked)):
-        take_turns(principal, asked, choice, at_target)
-        _pair_within(arm, plane, branch, psi_t, at_target, sense, kappa, keep, asked, mode, nodes, out)
+        trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_ABOVE], asked.depth, nodes, work, legs[0])
+        trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_BELOW], asked.depth, nodes, work, legs[1])
+        for flip in range(2):
+            if choices[flip] and turns_fit(legs[0], legs[1], flip == 1, principal[flip], asked):
+                out[BRANCH] = 2.0 * posture + flip
+                return
+    out[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi_t
+    for flip in range(2):
+        if flip == 1:
+            sense[4] = -sense[4]
+        for choice in range(choices[flip]):
+            take_turns(principal[flip], asked, choice, at_target)
+            if _pair_within(arm, plane, 2 * posture + flip, psi_t, held, asked, mode, nodes, work, out):
+                out[BRANCH] = 2.0 * posture + flip
 
 
 @kernel
-def _pair_within(arm, plane, branch, psi_t, at_target, sense, kappa, keep, asked, mode, nodes, out):  # type: ignore[no-untyped-def]
-    """`best_pair` for one choice of turns; `out` is bettered where this choice betters it."""
+def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
+    """Whether some turns bring both of two legs within the limits.
+
+    Args:
+        a: a leg from `trace_leg`, shape (ROWS, 6); b the other.
+        b: see a.
+        flipped: whether the legs were followed on the other wrist flip, whose joint 5 moves the other way.
+        principal: angles at the target within (-pi, pi], shape (6,).
+        asked: `Asked`.
+    """
+    for i in range(6):
+        low, high = min(a[LEAST_ANGLE, i], b[LEAST_ANGLE, i]), max(a[GREATEST_ANGLE, i], b[GREATEST_ANGLE, i])
+        if flipped and i == 4:
+            low, high = -high, -low
+        first = np.ceil((asked.lower[i] - principal[i] - low) / (2.0 * np.pi))
+        if not principal[i] + high + 2.0 * np.pi * first <= asked.upper[i]:
+            return False
+    return True
+
+
+@kernel
+def _pair_within(arm, plane, branch, psi_t, held, asked, mode, nodes, work, out):  # type: ignore[no-untyped-def]
+    """`best_pair` for one choice of turns; whether `out` was bettered by it."""
+    sense, kappa, keep, at_target = held
     legs, gentle = np.empty((2, 3)), np.empty((2, 3))
     leg_mode = GREATEST_MARGIN if mode == GREATEST_MARGIN else TRAVEL
     for k in range(2):
         side = 1.0 - 2.0 * k
-        held = (side * sense, keep, at_target)
-        best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, leg_mode, nodes, legs[k])
+        to = (side * sense, keep, at_target)
+        best_leg(arm, plane, branch, psi_t, side, kappa, to, asked, leg_mode, nodes, work, legs[k])
         if legs[k, 2] == -np.inf:
-            return
+            return False
         if mode == PLUNGE_ROTATION and legs[k, 0] < np.inf:
-            best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, gentle[k])
-    out[MARGIN] = max(out[MARGIN], min(legs[0, 2], legs[1, 2]))
+            best_leg(arm, plane, branch, psi_t, side, kappa, to, asked, mode, nodes, work, gentle[k])
+    margin = min(legs[0, 2], legs[1, 2])
     if not (legs[0, 0] < np.inf and legs[1, 0] < np.inf):
-        return
+        better = out[VALUE] == np.inf and margin > out[MARGIN]
+        out[MARGIN] = max(out[MARGIN], margin)
+        return better
+    out[MARGIN] = max(out[MARGIN], margin)
     above, below = legs[0, 1], legs[1, 1]
     if mode == TRAVEL:
         value = legs[0, 0] + legs[1, 0]
@@ -128,5 +166,201 @@ def _pair_within(arm, plane, branch, psi_t, at_target, sense, kappa, keep, asked
             above = gentle[0, 1]
         else:
             below = gentle[1, 1]
-    if value < out[VALUE]:
-        out[VALUE], out[SLOPE_ABOVE], out[SLOPE_BELOW] = value, above, below
+    if not value < out[VALUE]:
+        return False
+    out[VALUE], out[SLOPE_ABOVE], out[SLOPE_BELOW] = value, above, below
+    return True
+
+
+@kernel
+def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-untyped-def]
+    """A coarse look along the target line: what a few points of a few legs out of each spin of a grid say.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        psi: spins at the target [rad], shape (K,).
+        lines: whether to look at a branch there, shape (8, K).
+        keep: whether a joint must keep its direction, shape (6,).
+        asked: `Asked`.
+        mode: PLUNGE_ROTATION, or TRAVEL.
+        out: out, shape (4, K, 3): about the least value of pairs that may do (inf: none), what the margin of a pair is
+            at most (-inf: none can be run), and about the value of the pair that has it.
+    """
+    work = np.empty(ROOM)
+    kappa, sense, principal = np.empty(6), np.empty(6), np.empty((2, 6))
+    choices = np.zeros(2, dtype=np.int64)
+    slopes, ceiling, travel = np.empty(MAX_SLOPES), np.empty(MAX_SLOPES), np.empty(MAX_SLOPES)
+    ends = np.empty((MAX_SLOPES, 6))
+    for posture in range(4):
+        for n in range(psi.shape[0]):
+            spin = out[posture, n]
+            spin[:] = np.inf, -np.inf, np.inf
+            wanted = lines[:, n]
+            if not (wanted[2 * posture] or wanted[2 * posture + 1]):
+                continue
+            if not set_out(arm, plane, posture, psi[n], asked, wanted, kappa, sense, principal, choices):
+                continue
+            spin[:] = 0.0, np.inf, 0.0
+            for k in range(2):
+                side = 1.0 - 2.0 * k
+                count = slope_candidates(kappa, keep, side, psi[n], asked, slopes)
+                sift(
+                    arm, plane, 2 * posture, psi[n], slopes, count, side * sense, keep, asked, work, ceiling, travel,
+                    ends,
+                )  # fmt: skip
+                for j in range(count):
+                    if mode == PLUNGE_ROTATION:
+                        travel[j] = abs(slopes[j])
+                    if not _may_fit(ends[j], principal, choices, asked):
+                        ceiling[j], travel[j] = -np.inf, np.inf
+                least, greatest, there = np.inf, -np.inf, np.inf
+                for j in range(count):
+                    if ceiling[j] > greatest:
+                        greatest, there = ceiling[j], travel[j]
+                    if ceiling[j] < asked.min_rate:
+                        continue
+                    least = min(least, travel[j])
+                    # the end of an interval, between two candidates, may have less
+                    for outside, inside in ((j - 1, j + 1), (j + 1, j - 1)):
+                        if 0 <= outside < count and 0 <= inside < count and -np.inf < ceiling[outside] < asked.min_rate:
+                            share = (ceiling[j] - asked.min_rate) / (ceiling[j] - ceiling[outside])
+                            least = min(least, travel[j] + share * (travel[outside] - travel[j]))
+                spin[1] = min(spin[1], greatest)
+                if mode == PLUNGE_ROTATION and k == 1:
+                    # only one of the two legs has to turn little
+                    spin[0] = max(spin[0], least) if max(spin[0], least) == np.inf else min(spin[0], least)
+                    spin[2] = min(spin[2], there)
+                else:
+                    spin[0] += least
+                    spin[2] += there
+
+
+@kernel
+def _may_fit(end, principal, choices, asked):  # type: ignore[no-untyped-def]
+    """Whether a leg whose outer end is roughly known may lie within the limits on either wrist flip."""
+    for flip in range(2):
+        fits = choices[flip] > 0
+        for i in range(6):
+            there = (1.0 - SIEVE_ERROR) * (-end[i] if flip == 1 and i == 4 else end[i])
+            low, high = principal[flip, i] + min(0.0, there), principal[flip, i] + max(0.0, there)
+            first = np.ceil((asked.lower[i] - low) / (2.0 * np.pi))
+            fits = fits and high + 2.0 * np.pi * first <= asked.upper[i]
+        if fits:
+            return True
+    return False
+
+
+@kernel
+def set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal, choices):  # type: ignore[no-untyped-def]
+    """Whether legs can set out from a spin at the target at all.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        posture: 0..3.
+        psi_t: spin at the target [rad].
+        asked: `Asked`.
+        branches: whether to look at a branch, shape (8,).
+        kappa: out, shape (6,): critical rates [rad/m].
+        sense: out, shape (6,): signs of theta_psi on the unflipped branch.
+        principal: out, shape (2, 6): angles within (-pi, pi], of both flips.
+        choices: out, shape (2,): `turn_choices` of both flips.
+    """
+    cs = np.empty((6, 2))
+    theta_s, theta_psi = kappa, sense
+    if not twist_field(arm, plane, 0.0, psi_t, posture, cs, theta_s, theta_psi) or np.isnan(theta_psi[0]):
+        return False
+    for i in range(6):
+        kappa[i] = -theta_s[i] / theta_psi[i]
+        sense[i] = 1.0 if theta_psi[i] > 0.0 else -1.0
+    sense[4] *= flip_sign(arm, 2 * posture)
+    for flip in range(2):
+        choices[flip] = 0
+        if branches[2 * posture + flip]:
+            controller_angles(arm, cs, flip == 1, principal[flip])
+            choices[flip] = turn_choices(principal[flip], asked)
+    return choices[0] + choices[1] > 0
+
+
+@kernel
+def best_pairs(arm, plane, psi, lines, keep, asked, unlimited, mode, nodes, out):  # type: ignore[no-untyped-def]
+    """`best_pair` at each spin of a grid.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        psi: spins at the target [rad], shape (K,).
+        lines: whether to look at a branch there, shape (8, K).
+        keep: whether a joint must keep its direction, shape (6,).
+        asked: `Asked`.
+        unlimited: the same without joint limits.
+        mode: see `best_pair`.
+        nodes: points on a leg.
+        out: out, shape (4, K, COLUMNS): see `best_pair`.
+    """
+    work = np.empty(ROOM)
+    for posture in range(4):
+        for n in range(psi.shape[0]):
+            pair = out[posture, n]
+            pair[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi[n]
+            wanted = lines[:, n]
+            if wanted[2 * posture] or wanted[2 * posture + 1]:
+                best_pair(
+                    arm, plane, posture, psi[n], keep, asked, unlimited, wanted, mode, nodes, np.inf, True, work, pair
+                )  # fmt: skip
+
+
+@kernel
+def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mode, nodes, steps, bound, patient, best):  # type: ignore[no-untyped-def]
+    """The bottom of a valley of the target line: golden section, first towards pairs that will do, then among them.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        posture: 0..3.
+        low: one end of the valley [rad].
+        high: the other.
+        keep: whether a joint must keep its direction, shape (6,).
+        asked: `Asked`.
+        unlimited: the same without joint limits.
+        branches: whether to look at a branch, shape (8,).
+        mode: see `best_pair`.
+        nodes: points on a leg.
+        steps: of the golden section, at most.
+        bound: see `best_pair`.
+        patient: whether to go on where no pair will do, for the greatest margin that there is; thorough, too, then.
+        best: out, shape (COLUMNS,): the best pair seen, see `best_pair`.
+    """
+    work, pair = np.empty(ROOM), np.empty(COLUMNS)
+    best[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, 0.5 * (low + high)
+    x, y = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    args = (keep, asked, unlimited, branches, mode, nodes, bound, patient)
+    at_x = _worth(arm, plane, posture, x, args, work, pair, best)
+    at_y = _worth(arm, plane, posture, y, args, work, pair, best)
+    at_low, at_high = np.nan, np.nan
+    for _ in range(steps):
+        if not patient and min(at_x, at_y) - most_gained(low, x, y, high, at_low, at_x, at_y, at_high) >= HOPELESS:
+            return  # too little can be gained: it will not get there
+        if at_x <= at_y:
+            high, at_high = y, at_y
+            y, at_y = x, at_x
+            x = high - GOLDEN * (high - low)
+            at_x = _worth(arm, plane, posture, x, args, work, pair, best)
+        else:
+            low, at_low = x, at_x
+            x, at_x = y, at_y
+            y = low + GOLDEN * (high - low)
+            at_y = _worth(arm, plane, posture, y, args, work, pair, best)
+
+
+@kernel
+def _worth(arm, plane, posture, psi_t, args, work, pair, best):  # type: ignore[no-untyped-def]
+    """The value of the best pair at a spin, or HOPELESS and what it lacks; `best` is bettered where it is better."""
+    keep, asked, unlimited, branches, mode, nodes, bound, thorough = args
+    best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, thorough, work, pair)
+    if pair[VALUE] < best[VALUE] or (best[VALUE] == np.inf and pair[MARGIN] > best[MARGIN]):
+        best[:] = pair
+    if pair[VALUE] < np.inf:
+        return pair[VALUE]
+    return HOPELESS + min(asked.min_rate - pair[MARGIN], HOPELESS) if pair[MARGIN] > -np.inf else np.inf

@@ -1,6 +1,6 @@
 """Between the forms of the files and the nouns: robot, tool, frame, settings, hole; mm and degrees end here.
 
-`plan_conversion` does the same for the plan, which is made of these.
+`plan_data` and `plan_conversion` do the same for the plan, which is made of these.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from zerorev.errors import InputError
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
 from zerorev.model._units import deg, deg_per_mm, m, mm, plain, rad, rad_per_m
 from zerorev.model.hole import Hole, psi_zero_vector
-from zerorev.model.job import Settings
+from zerorev.model.job import Settings, Weights
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
-from zerorev.model.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm
+from zerorev.model.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm, WeightsForm
 from zerorev.model.tool import Tool
 from zerorev.model.validation import inside
 
@@ -34,6 +34,8 @@ __all__ = [
     "tool_data",
     "tool_from",
 ]
+
+NOMINAL_DEPTH_MM = 1.0  # of a hole whose depth is to be found
 
 
 def robot_from(form: RobotForm, **sources: Any) -> Robot:
@@ -99,7 +101,11 @@ def settings_from(form: SettingsForm) -> Settings:
         min_rate=float(rad_per_m(form.min_rate_deg_per_mm)),
         min_rate_rule=form.min_rate_rule,
         psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),
-        objective=form.objective,
+        legs=form.legs,
+        max_twist=float(rad_per_m(form.max_twist_deg_per_mm)),
+        objective=form.objective if isinstance(form.objective, str) else "travel",
+        weights=() if isinstance(form.objective, str) else _weights(form.objective),
+        joint_stiffness=None if form.joint_stiffness_nm_per_rad is None else tuple(form.joint_stiffness_nm_per_rad),
         reversal_weights=tuple(form.reversal_weights),
         near_joints=None if form.near_joints_deg is None else tuple(rad(form.near_joints_deg).tolist()),
         blend=float(m(form.blend_mm)),
@@ -112,13 +118,24 @@ def settings_from(form: SettingsForm) -> Settings:
     )
 
 
+def _weights(form: WeightsForm) -> Weights:
+    """The criteria that weigh anything."""
+    weights = tuple((name, weight) for name, weight in form.model_dump().items() if weight > 0)
+    if not weights:
+        raise InputError("no criterion weighs anything", where="objective", accepted="one weight or more above 0")
+    return weights
+
+
 def settings_data(settings: Settings) -> dict[str, Any]:
     """The settings as a plan file holds them."""
     data = {
         "min_rate_deg_per_mm": deg_per_mm(settings.min_rate),
         "min_rate_rule": settings.min_rate_rule,
         "psi_bound_deg": None if settings.psi_bound is None else deg(settings.psi_bound),
-        "objective": settings.objective,
+        "legs": settings.legs,
+        "max_twist_deg_per_mm": deg_per_mm(settings.max_twist),
+        "objective": dict(settings.weights) or settings.objective,
+        "joint_stiffness_nm_per_rad": settings.joint_stiffness,
         "reversal_weights": settings.reversal_weights,
         "near_joints_deg": None if settings.near_joints is None else deg(settings.near_joints),
         "blend_mm": mm(settings.blend),
@@ -134,20 +151,23 @@ def settings_data(settings: Settings) -> dict[str, Any]:
 def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_part: Array) -> Hole:
     """The hole of a job in the base frame, its spin counted from the job's reference.
 
+    One without a depth has a nominal one, and no given motion.
+
     Raises:
         InputError: a direction of zero length, a reference along the drill axis, a given motion that is none.
     """
     where, R = f"hole {form.id}", T_base_part[:3, :3]
+    depth_mm = form.depth_mm or NOMINAL_DEPTH_MM
     target = T_base_part[:3, 3] + R @ m(form.target_mm)
     direction = unit(R @ unit(form.direction, f"{where}, direction"), where)
     vector = reference if isinstance(reference, str) else np.array(reference)
     with inside(where):
-        profile = given_profile(form.standoff_mm, form.psi_deg, form.depth_mm)
+        profile = None if form.depth_mm is None else given_profile(form.standoff_mm, form.psi_deg, depth_mm)
     return Hole(
         id=form.id,
         target=target,
         direction=direction,
-        depth=float(m(form.depth_mm)),
+        depth=float(m(depth_mm)),
         psi_zero=psi_zero_vector(vector, target, direction, tool, T_base_part, where),
         profile=profile,
         branch=form.branch,

@@ -15,11 +15,13 @@ from zerorev.model.conversion import frame_from, hole_from, robot_from, settings
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.model.output import write_text
+from zerorev.model.part import part_document
 from zerorev.model.plan import Plan
-from zerorev.model.plan_conversion import plan_data, plan_from
-from zerorev.model.plan_schema import PlanFile
+from zerorev.model.plan_conversion import plan_from
+from zerorev.model.plan_data import FORMS, plan_data
+from zerorev.model.plan_schema import DepthFile, PlanFile
 from zerorev.model.robot import Robot
-from zerorev.model.schema import Form, HoleForm, JobFile, RobotFile, ToolFile
+from zerorev.model.schema import Form, HoleForm, JobFile, RobotFile, SettingsForm, ToolFile
 from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text, yaml_document
 from zerorev.model.tool import Tool
 from zerorev.model.validation import checked, inside
@@ -85,15 +87,23 @@ def read_tool(name_or_path: str | Path, folder: str | Path = ".") -> Tool:
         return tool_from(form, sources=form.sources)
 
 
-def read_job(path: str | Path) -> Job:
+def read_job(path: str | Path, *, depth_needed: bool = True, options: Mapping[str, Any] | None = None) -> Job:
     """The job of a job file, its holes in the base frame; paths in it are relative to it.
 
+    Args:
+        path: of the file.
+        depth_needed: whether each hole must have its depth; else those without have one of 1 mm, for nobody to look at.
+        options: keys of the settings that take the place of the file's own.
+
     Raises:
-        InputError: anything in the file, its CSV, its robot or its tool that cannot be used.
+        InputError: anything in the options, the file, its CSV, its robot or its tool that cannot be used.
     """
     path = Path(path)
     document = yaml_document(read_text(path, "a job file (YAML)"), str(path))
-    return _job(document, path.parent, path.stem)
+    if options and isinstance(document.data, dict):
+        checked(SettingsForm, Document("options", dict(options)))
+        document.data.update(options)
+    return _job(document, path.parent, path.stem, depth_needed=depth_needed)
 
 
 def job_from_dict(mapping: Mapping[str, Any], folder: str | Path = ".") -> Job:
@@ -106,30 +116,36 @@ def job_from_dict(mapping: Mapping[str, Any], folder: str | Path = ".") -> Job:
 
 
 def read_plan(path: str | Path) -> Plan:
-    """The plan of a plan file.
+    """The plan of a plan file or a depth file, or of a part of one that `zerorev.model.part` keeps.
 
     Raises:
         InputError: another kind of file, cut short, altered, or with values that cannot be used.
     """
-    document = json_document(read_text(Path(path), "a plan file (JSON)"), str(path))
-    form = checked(PlanFile, document)
+    text = read_text(Path(path), "a plan file (JSON)")
+    document = part_document(text, str(path)) or json_document(text, str(path))
+    form = checked(_form_of(document), document)
     with inside(document.file):
         return plan_from(form)
 
 
+def _form_of(document: Document) -> type[PlanFile] | type[DepthFile]:
+    depth = isinstance(document.data, dict) and document.data.get("format") == "zerorev.depth/1"
+    return DepthFile if depth else PlanFile
+
+
 def plan_to_json(plan: Plan) -> dict[str, Any]:
-    """The plan as plain data, exactly as a plan file holds it.
+    """The plan as plain data, exactly as its file holds it: a plan file, or a depth file by the plan's `strokes`.
 
     Raises:
         InputError: a number that no plan file may hold (NaN or infinite where a number is needed).
     """
     data = plan_data(plan)
-    checked(PlanFile, Document("plan", data))
+    checked(FORMS[plan.strokes], Document("plan", data))
     return data
 
 
 def write_plan(plan: Plan, path: str | Path) -> None:
-    """Write a plan file, whole or not at all.
+    """Write a plan file, or a depth file by the plan's `strokes`, whole or not at all.
 
     Raises:
         InputError: the plan holds a number that no plan file may hold.
@@ -139,14 +155,14 @@ def write_plan(plan: Plan, path: str | Path) -> None:
 
 
 def write_schemas(folder: str | Path) -> None:
-    """Write the JSON Schemas of the job and plan files, job.schema.json and plan.schema.json, into a folder."""
-    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile}
+    """Write the JSON Schemas of job, plan and depth files, job.schema.json and so on, into a folder."""
+    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile, "depth": DepthFile}
     for name, form in forms.items():
         schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"} | form.model_json_schema()
         write_text(Path(folder) / f"{name}.schema.json", json_text(schema))
 
 
-def _job(document: Document, folder: Path, name: str) -> Job:
+def _job(document: Document, folder: Path, name: str, *, depth_needed: bool = True) -> Job:
     form = checked(JobFile, document)
     with inside(document.where(("robot",))):
         robot = read_robot(form.robot, folder)
@@ -155,7 +171,7 @@ def _job(document: Document, folder: Path, name: str) -> Job:
     with inside(document.file):
         settings, T_base_part = settings_from(form), frame_from(form.part_frame)
     holes: dict[str, Hole] = {}
-    for where, hole in _hole_forms(form, document, folder):
+    for where, hole in _hole_forms(form, document, folder, depth_needed):
         if hole.id in holes:
             raise InputError(f"the id '{hole.id}' is used twice", where=where, accepted="ids that differ")
         with inside(where):
@@ -163,15 +179,22 @@ def _job(document: Document, folder: Path, name: str) -> Job:
     return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name)
 
 
-def _hole_forms(form: JobFile, document: Document, folder: Path) -> list[tuple[str, HoleForm]]:
+def _hole_forms(form: JobFile, document: Document, folder: Path, depth_needed: bool) -> list[tuple[str, HoleForm]]:
     """The holes of a job or of its CSV, each with where it stands."""
     if not isinstance(form.holes, str):
-        return [(document.where(("holes", i)), hole) for i, hole in enumerate(form.holes)]
+        listed = [(document.where(("holes", i)), hole) for i, hole in enumerate(form.holes)]
+        for where, hole in listed:
+            if depth_needed and hole.depth_mm is None:
+                accepted = HoleForm.model_fields["depth_mm"].description or ""
+                raise InputError("is missing", where=f"{where}.depth_mm (hole {hole.id})", accepted=accepted)
+        return listed
     path, holes = folder / form.holes, []
     with inside(document.where(("holes",))):
         text = read_text(path, "a CSV file of holes, or a list of holes")
-    for line, label, numbers in csv_rows(text, str(path), "id", ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")):
-        mapping = {"id": label, "target_mm": numbers[:3], "direction": numbers[3:6], "depth_mm": numbers[6]}
+    columns = ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
+    for line, cells in csv_rows(text, str(path), "id", columns, () if depth_needed else ("depth_mm",)):
+        target, direction = ([cells[name] for name in names] for names in (columns[:3], columns[3:6]))
+        mapping = {"id": cells["id"], "target_mm": target, "direction": direction, "depth_mm": cells.get("depth_mm")}
         row = Document(str(path), mapping, {(): line})
         holes.append((row.where(), checked(HoleForm, row)))
     if not holes:

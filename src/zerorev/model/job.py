@@ -13,9 +13,16 @@ from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["Job", "Settings"]
+__all__ = ["CRITERIA", "Job", "Settings", "Weights"]
 
 Objective = Literal["travel", "margin", "plunge_rotation"]
+CRITERIA = (
+    "travel", "margin", "plunge_rotation", "tool_speed_change", "limit_distance",
+    "compliance_axial", "compliance_lateral", "manipulability",
+)  # fmt: skip
+NEED_STIFFNESS = ("compliance_axial", "compliance_lateral")
+Weights = tuple[tuple[str, float], ...]
+Legs = Literal["straight", "free"]
 
 
 @dataclass(frozen=True)
@@ -27,8 +34,13 @@ class Settings:
             (thesis sec. 4.3, theory §5).
         min_rate_rule: `pointwise` (at every point) or `mean` (on the average over each leg).
         psi_bound: spins within +- this [rad], or None for a periodic spin.
+        legs: `straight` (spin linear along each leg) or `free` (spin varying freely along it; theory §4).
+        max_twist: greatest twist rate |d psi / d s| of free legs [rad/m].
         objective: among plans of equal reversals that keep the threshold: least `travel`, greatest `margin` (slowest
             joint), or least `plunge_rotation`.
+        weights: pairs of a criterion and its weight, whose weighted sum is to be least instead of the objective
+            (`zerorev.criteria`); none: the objective decides.
+        joint_stiffness: of each joint [N m/rad], shape (6,), for the compliance at the tip; None: unknown.
         reversal_weights: what a reversal of each joint costs, shape (6,), each above 0.
         near_joints: joint angles [rad], shape (6,), to which free turns are chosen nearest; None: the turns farthest
             from the limits.
@@ -44,7 +56,11 @@ class Settings:
     min_rate: float = float(np.deg2rad(10.0))
     min_rate_rule: Literal["pointwise", "mean"] = "pointwise"
     psi_bound: float | None = None
+    legs: Legs = "straight"
+    max_twist: float = float(np.deg2rad(5e3))
     objective: Objective = "travel"
+    weights: Weights = ()
+    joint_stiffness: tuple[float, ...] | None = None
     reversal_weights: tuple[float, ...] = (1.0,) * 6
     near_joints: tuple[float, ...] | None = None
     blend: float = 1e-3
@@ -59,7 +75,7 @@ class Settings:
         """Check ranges."""
         for name in ("min_rate", "blend", "lead_in"):
             _check(getattr(self, name) >= 0, name, "0 or more")
-        for name in ("feed_plunge", "feed_retract"):
+        for name in ("max_twist", "feed_plunge", "feed_retract"):
             _check(getattr(self, name) > 0, name, "above 0")
         if self.psi_bound is not None:
             _check(self.psi_bound > 0, "psi_bound", "above 0, or none for a periodic spin")
@@ -72,8 +88,25 @@ class Settings:
             "reversal_weights",
             "six numbers above 0",
         )
+        if self.joint_stiffness is not None:
+            stiff = len(self.joint_stiffness) == 6 and all(0 < k < np.inf for k in self.joint_stiffness)
+            _check(stiff, "joint_stiffness", "six numbers above 0")
+        self._check_weights()
         if self.near_joints is not None:
             _check(len(self.near_joints) == 6, "near_joints", "six angles")
+
+    def _check_weights(self) -> None:
+        weights = dict(self.weights)
+        known = len(weights) == len(self.weights) and set(weights) <= set(CRITERIA)
+        _check(known, "objective", f"each once: {', '.join(CRITERIA)}")
+        _check(all(0 < weight < np.inf for weight in weights.values()), "objective", "weights above 0")
+        lacking = [name for name in weights if name in NEED_STIFFNESS and self.joint_stiffness is None]
+        if lacking:
+            raise InputError(
+                f"{lacking[0]} needs the stiffness of the joints, which is not given",
+                where="objective",
+                accepted="joint_stiffness_nm_per_rad beside it, six numbers above 0 [N m/rad]",
+            )
 
     @property
     def passing_blend(self) -> float:

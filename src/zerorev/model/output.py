@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from zerorev.errors import OutputError
 
-__all__ = ["check_file", "check_folder", "make_folder", "write_bytes", "write_text"]
+__all__ = ["as_output_error", "check_file", "check_folder", "make_folder", "write_bytes", "write_pieces", "write_text"]
 
 
 def check_file(path: str | Path) -> None:
@@ -18,7 +18,7 @@ def check_file(path: str | Path) -> None:
     Raises:
         OutputError: no such folder, a folder of that name, no permission.
     """
-    with _as_output_error(path):
+    with as_output_error(path):
         target = Path(os.path.realpath(path))
         if not target.parent.is_dir():
             raise OutputError(str(path), f"the folder {target.parent} does not exist")
@@ -34,7 +34,7 @@ def check_folder(path: str | Path) -> None:
     Raises:
         OutputError: no such parent folder, a file of that name, no permission.
     """
-    with _as_output_error(path):
+    with as_output_error(path):
         target = Path(os.path.realpath(path))
         if target.exists() and not target.is_dir():
             raise OutputError(str(path), "it is a file, not a folder")
@@ -50,7 +50,7 @@ def make_folder(path: str | Path) -> None:
         OutputError: as `check_folder`.
     """
     check_folder(path)
-    with _as_output_error(path):
+    with as_output_error(path):
         Path(path).mkdir(exist_ok=True)
 
 
@@ -60,7 +60,7 @@ def write_text(path: str | Path, text: str) -> None:
     Raises:
         OutputError: as `write_bytes`, or text that no file can hold.
     """
-    with _as_output_error(path):
+    with as_output_error(path):
         data = text.encode()
     write_bytes(path, data)
 
@@ -71,13 +71,26 @@ def write_bytes(path: str | Path, data: bytes) -> None:
     Raises:
         OutputError: as `check_file`, or a full disk.
     """
+    _write(path, (data,))
+
+
+def write_pieces(path: str | Path, pieces: Iterable[str]) -> None:
+    """Write a text file as `write_text` does, from pieces that need not all be in memory at once.
+
+    Raises:
+        OutputError: as `write_text`.
+    """
+    _write(path, (piece.encode() for piece in pieces))
+
+
+def _write(path: str | Path, pieces: Iterable[bytes]) -> None:
     check_file(path)
-    with _as_output_error(path):
+    with as_output_error(path):
         target = Path(os.path.realpath(path))  # through a link to the file it stands for
         beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
             with beside.open("xb") as stream:
-                stream.write(data)
+                stream.writelines(pieces)
                 stream.flush()
                 os.fsync(stream.fileno())
             os.replace(beside, target)
@@ -92,7 +105,7 @@ def _check_access(path: str | Path, place: Path) -> None:
 
 
 @contextmanager
-def _as_output_error(path: str | Path) -> Iterator[None]:
+def as_output_error(path: str | Path) -> Iterator[None]:
     """What the system says about a path, as an `OutputError`."""
     try:
         yield

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Generic, Literal, TypeVar
 
 import numpy as np
 
@@ -14,10 +14,26 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["Baseline", "Certificate", "Event", "Finding", "HolePlan", "Motion", "Plan", "Score", "Verification"]
+__all__ = [
+    "Baseline",
+    "Certificate",
+    "Event",
+    "Finding",
+    "HolePlan",
+    "Level",
+    "Measures",
+    "Motion",
+    "Plan",
+    "Score",
+    "Strokes",
+    "Verification",
+]
+
+V = TypeVar("V", float, Array)
 
 Level = Literal["error", "warning", "info"]
 LegName = Literal["plunge", "target", "retract"]
+Strokes = Literal["asked", "deepest"]
 
 
 @dataclass(frozen=True)
@@ -76,6 +92,32 @@ class Score:
     def reversals(self) -> int:
         """Count of direction changes over all joints."""
         return sum(self.reversals_per_joint)
+
+
+@dataclass(frozen=True)
+class Measures(Generic[V]):
+    """What the criteria measure of a motion beside its reversals; or of many motions, in arrays of one shape.
+
+    Attributes:
+        travel: sum over the joints of the angle moved [rad].
+        margin: least rate of the joints that do not reverse [rad/m], by the rule of the motion threshold; 0 where all
+            reverse.
+        plunge_rotation: angle that the tool is spun through during the plunge [rad].
+        tool_speed_change: greatest rate at which it is spun at the feed of the plunge [rad/s] (thesis eq. 5.4).
+        limit_distance: least distance of a joint to a limit [1]: 0 at the limit, 1 in the middle of its range.
+        compliance_axial: greatest give of the tip along the drill axis [m/N], NaN where no stiffness is known.
+        compliance_lateral: greatest give of the tip across the drill axis [m/N], NaN where no stiffness is known.
+        manipulability: least Yoshikawa's manipulability [1]: 0 where the arm is singular, always below 1.
+    """
+
+    travel: V
+    margin: V
+    plunge_rotation: V
+    tool_speed_change: V
+    limit_distance: V
+    compliance_axial: V
+    compliance_lateral: V
+    manipulability: V
 
 
 @dataclass(frozen=True)
@@ -170,6 +212,11 @@ class HolePlan:
         findings: what a user should know.
         wrist_offset: distance of the wrist centre from the drill axis [m], the lever of the spin (theory §1).
         certificate: the rigorous proof, or None where it was not asked for.
+        measures: what the criteria measure of the motion, or None.
+        deepest: the deepest stroke without a reversal [m], on the hole's own branch if it names one; 0 where there is
+            none, None where it was not looked for.
+        critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
+            finite where a joint has none; None without a motion.
     """
 
     hole: Hole
@@ -181,6 +228,9 @@ class HolePlan:
     verified: Verification | None = None
     findings: tuple[Finding, ...] = ()
     certificate: Certificate | None = None
+    measures: Measures[float] | None = None
+    deepest: float | None = None
+    critical_rates: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -195,6 +245,7 @@ class Plan:
         T_base_part: part frame, shape (4, 4), translation [m].
         name: of the job.
         findings: about the whole plan.
+        strokes: whether the stroke of each hole is the one `asked` for or its `deepest` without a reversal.
     """
 
     robot: Robot
@@ -204,6 +255,7 @@ class Plan:
     T_base_part: Array = field(default_factory=lambda: np.eye(4))
     name: str = "job"
     findings: tuple[Finding, ...] = ()
+    strokes: Strokes = "asked"
 
     @property
     def all_findings(self) -> tuple[Finding, ...]:

@@ -1,4 +1,4 @@
-"""The form of the plan file: what comes out of planning, complete enough to be checked and exported alone."""
+"""The forms of the plan file and the depth file: what comes out, complete enough to be checked and exported alone."""
 
 from __future__ import annotations
 
@@ -24,10 +24,14 @@ from zerorev.model.schema import (
 __all__ = [
     "BaselineForm",
     "CertificateForm",
+    "CriteriaForm",
+    "DepthFile",
+    "DepthHole",
     "FindingForm",
     "GivenForm",
     "JointsDegForm",
     "PlanFile",
+    "PlanHead",
     "PlanHole",
     "VerifiedForm",
 ]
@@ -56,6 +60,31 @@ class FindingForm(Form):
     kind: str = Field(description="text: a fixed word for machines")
     message: str = Field(description="text: one sentence for people")
     hole: str | None = Field(description="text: the hole's id; or null: the whole plan is meant")
+
+
+class CriteriaForm(Form):
+    """What the criteria measure of a motion beside its reversals; null where it is undefined."""
+
+    travel_deg: float | None = Field(description="a number [deg]: sum over the joints of the angle moved")
+    margin_deg_per_mm: float | None = Field(
+        description="a number [deg/mm]: slowest motion of a joint that does not reverse, by min_rate_rule"
+    )
+    plunge_rotation_deg: float | None = Field(description="a number [deg]: spin of the tool during the plunge")
+    tool_speed_change_rpm: float | None = Field(
+        description="a number [rev/min]: greatest change of the drill's speed by the spin during the plunge"
+    )
+    limit_distance: float | None = Field(
+        description="a number: least distance of a joint to a limit, 0 at it, 1 in the middle of its range"
+    )
+    compliance_axial_um_per_n: float | None = Field(
+        description="a number [um/N]: greatest give of the tip along the drill axis; null: no joint stiffness is given"
+    )
+    compliance_lateral_um_per_n: float | None = Field(
+        description="a number [um/N]: greatest give of the tip across the drill axis; null: no joint stiffness is given"
+    )
+    manipulability: float | None = Field(
+        description="a number: least manipulability, 0 where the arm is singular, always below 1"
+    )
 
 
 class EventForm(Form):
@@ -133,6 +162,10 @@ class PlanHole(Form):
     target_mm: Three = Field(description="three numbers [mm]: bottom of the stroke, base frame")
     direction: Three = Field(description="three numbers: unit vector into the material, base frame")
     depth_mm: Positive = Field(description="a number above 0 [mm]: the stroke")
+    deepest_mm: NotNegative | None = Field(
+        default=None,
+        description="a number [mm]: the deepest stroke without a reversal, 0: none; or null: not looked for",
+    )
     psi_zero: Three = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
     given: GivenForm | None = Field(
         default=None,
@@ -158,6 +191,13 @@ class PlanHole(Form):
     limit_distance_deg: SixMeasured | None = Field(
         description="six numbers [deg]: least distance to a joint limit, negative beyond it; null: undefined"
     )
+    critical_rates_deg_per_mm: SixMeasured | None = Field(
+        default=None,
+        description="six numbers [deg/mm]: twist rate at which each joint stands still at the corner; null: none",
+    )
+    twist_spread_deg_per_mm: NotNegative | None = Field(
+        default=None, description="a number [deg/mm]: greatest less least critical rate; or null: a joint has none"
+    )
     wrist_offset_mm: NotNegative = Field(description="a number [mm]: distance of the wrist centre from the drill axis")
     baseline: BaselineForm | None = Field(
         description="a mapping of reversals, reversals_per_joint and travel_deg; or null: it cannot be run"
@@ -168,19 +208,49 @@ class PlanHole(Form):
     certificate: CertificateForm | None = Field(
         default=None, description="a mapping of what is proven of the continuous motion; or null: it was not asked for"
     )
+    criteria: CriteriaForm | None = Field(
+        default=None, description="a mapping of what the criteria measure of the motion; or null: it was not measured"
+    )
     findings: list[FindingForm] = Field(description="a list of level, kind, message and hole")
 
 
-class PlanFile(Form):
-    """A plan file, JSON: complete enough to be checked and exported alone."""
+class DepthHole(Form):
+    """One hole's deepest stroke."""
 
-    model_config = ConfigDict(title="zerorev plan")
+    id: Name = Field(description="text: the hole's id")
+    deepest_mm: NotNegative = Field(
+        description="a number [mm]: the deepest stroke without a reversal; 0: there is none"
+    )
+    plan: PlanHole = Field(description="a mapping: the motion that reaches it, as a hole of a plan file")
 
-    format: Literal["zerorev.plan/1"] = Field(description="zerorev.plan/1")
+
+class PlanHead(Form):
+    """What a file says of all its holes."""
+
+    format: str = Field(description="text: the kind of file")
     name: Name = Field(description="text: name of the job")
     robot: PlanRobot = Field(description="a mapping: name, numbers and sha256 of the robot")
     tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
     part_frame: FrameForm = Field(description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame")
     settings: SettingsForm = Field(description="a mapping of the job's settings")
-    holes: list[PlanHole] = Field(min_length=1, description="a list of one hole or more, in the job's order")
     findings: list[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")
+
+
+class PlanFile(PlanHead):
+    """A plan file, JSON: complete enough to be checked and exported alone."""
+
+    model_config = ConfigDict(title="zerorev plan")
+
+    format: Literal["zerorev.plan/1"] = Field(description="zerorev.plan/1")
+    holes: list[PlanHole] = Field(min_length=1, description="a list of one hole or more, in the job's order")
+
+
+class DepthFile(PlanHead):
+    """A depth file, JSON: the deepest strokes and the plans that reach them, checked and exported as a plan file is."""
+
+    model_config = ConfigDict(title="zerorev depth")
+
+    format: Literal["zerorev.depth/1"] = Field(description="zerorev.depth/1")
+    holes: list[DepthHole] = Field(
+        min_length=1, description="a list of id, deepest_mm and plan of one hole or more, in the job's order"
+    )

@@ -125,6 +125,33 @@ class FeedForm(Form):
     retract: Positive = Field(default=20.0, description="a number above 0 [mm/s]: feed of the retract")
 
 
+class WeightsForm(Form):
+    """What a motion is judged by beside its reversals: the weighted sum of these is to be least."""
+
+    travel: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the joint travel")
+    margin: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the slowest joint")
+    plunge_rotation: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the tool's spin during the plunge"
+    )
+    tool_speed_change: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the change of the drill's speed by the spin"
+    )
+    limit_distance: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the distance to the joint limits"
+    )
+    compliance_axial: NotNegative = Field(
+        default=0.0,
+        description="a number, 0 or more: weight of the give along the drill axis; needs joint_stiffness_nm_per_rad",
+    )
+    compliance_lateral: NotNegative = Field(
+        default=0.0,
+        description="a number, 0 or more: weight of the give across the drill axis; needs joint_stiffness_nm_per_rad",
+    )
+    manipulability: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the distance from singular postures"
+    )
+
+
 class SettingsForm(Form):
     """How to plan and how to run the motion."""
 
@@ -139,10 +166,25 @@ class SettingsForm(Form):
     psi_bound_deg: Positive | None = Field(
         default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
     )
-    objective: Literal["travel", "margin", "plunge_rotation"] = Field(
+    legs: Literal["straight", "free"] = Field(
+        default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
+    )
+    max_twist_deg_per_mm: Positive = Field(
+        default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
+    )
+    objective: Annotated[
+        Annotated[Literal["travel", "margin", "plunge_rotation"], Tag("<text>")]
+        | Annotated[WeightsForm, Tag("<mapping>")],
+        Discriminator(_kind),
+    ] = Field(
         default="travel",
         description="travel (least joint travel), margin (greatest slowest motion) or plunge_rotation (least spin "
-        "during the plunge); decides among plans of equal reversals",
+        "during the plunge), or a mapping of criteria to weights; decides among plans of equal reversals",
+    )
+    joint_stiffness_nm_per_rad: SixPositive | None = Field(
+        default=None,
+        description="six numbers above 0 [N m/rad]: stiffness of the joints, for the compliance at the tip; or null: "
+        "unknown",
     )
     reversal_weights: SixPositive = Field(
         default=[1.0] * 6, description="six numbers above 0: what a reversal of each joint costs"
@@ -179,7 +221,9 @@ class HoleForm(Form):
     id: Id = Field(description="text or a whole number: how the hole is called; one line, 1 to 100 characters")
     target_mm: Three = Field(description="three numbers [mm]: bottom of the stroke, part frame")
     direction: Three = Field(description="three numbers, not all 0: into the material, part frame, of any length")
-    depth_mm: Positive = Field(description="a number above 0 [mm]: the stroke")
+    depth_mm: Positive | None = Field(
+        default=None, description="a number above 0 [mm]: the stroke; zerorev depth alone does without it"
+    )
     psi_deg: Breakpoints | None = Field(
         default=None,
         description="three numbers [deg]: spins at start, target and end of a motion to be evaluated, not searched; "

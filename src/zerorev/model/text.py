@@ -19,7 +19,7 @@ import yaml
 
 from zerorev.errors import InputError
 
-__all__ = ["Document", "csv_rows", "json_document", "json_text", "read_text", "yaml_document"]
+__all__ = ["Document", "csv_rows", "json_document", "json_pieces", "json_text", "read_text", "yaml_document"]
 
 MAX_BYTES = 64 * 2**20
 LINE_WIDTH = 160
@@ -210,6 +210,24 @@ def json_text(data: Any) -> str:
     return _laid_out(data, 0, 0) + "\n"
 
 
+def json_pieces(data: dict[str, Any]) -> Iterator[str]:
+    """The `json_text` of a mapping piece by piece; an iterator among its values is a list of long entries."""
+    before = "{"
+    for key, value in data.items():
+        name = f"\n  {json.dumps(key, ensure_ascii=False)}: "
+        if isinstance(value, Iterator):
+            yield before + name
+            between = "["
+            for entry in value:
+                yield f"{between}\n    {_laid_out(entry, 4, 1)}"
+                between = ","
+            yield "\n  ]"
+        else:
+            yield before + name + _laid_out(value, 2, len(name) - 2)
+        before = ","
+    yield "\n}\n"
+
+
 def _laid_out(data: Any, indent: int, used: int) -> str:
     line = json.dumps(data, ensure_ascii=False, allow_nan=False)
     if not isinstance(data, (dict, list)) or not data or (indent > 0 and indent + used + len(line) <= LINE_WIDTH):
@@ -225,7 +243,9 @@ def _laid_out(data: Any, indent: int, used: int) -> str:
 # --- CSV --------------------------------------------------------------------------------------------------------------
 
 
-def csv_rows(text: str, file: str, label: str, numbers: tuple[str, ...]) -> Iterator[tuple[int, str, list[float]]]:
+def csv_rows(
+    text: str, file: str, label: str, numbers: tuple[str, ...], optional: tuple[str, ...] = ()
+) -> Iterator[tuple[int, dict[str, Any]]]:
     """Rows of a CSV table with one column of text and several of finite numbers, in any order of columns.
 
     Args:
@@ -233,9 +253,10 @@ def csv_rows(text: str, file: str, label: str, numbers: tuple[str, ...]) -> Iter
         file: how messages name it.
         label: name of the text column.
         numbers: names of the number columns.
+        optional: those of them that may be missing.
 
     Yields:
-        The row's line, its label, and its numbers in the order of `numbers`.
+        The row's line, and its cells by the names of their columns.
 
     Raises:
         InputError: a missing, unknown or repeated column, a cell too many or too few, a cell that is not a number.
@@ -246,11 +267,11 @@ def csv_rows(text: str, file: str, label: str, numbers: tuple[str, ...]) -> Iter
     try:
         header = [cell.strip() for cell in next(reader, [])]
         where = f"{file}, line 1"
-        if missing := [name for name in columns if name not in header]:
+        if missing := [name for name in columns if name not in (*header, *optional)]:
             raise InputError(f"no column {', '.join(missing)}", where=where, accepted=accepted)
         if unknown := [name for name in header if name not in columns]:
             raise InputError(f"unknown column {', '.join(map(repr, unknown))}", where=where, accepted=accepted)
-        if len(header) > len(columns):
+        if len(header) > len(set(header)):
             raise InputError("a column stands twice", where=where, accepted=accepted)
         for cells in reader:
             where = f"{file}, line {reader.line_num}"
@@ -259,7 +280,9 @@ def csv_rows(text: str, file: str, label: str, numbers: tuple[str, ...]) -> Iter
             if len(cells) != len(header):
                 raise InputError(f"{len(cells)} cells", where=where, accepted=f"{len(header)} cells")
             row = {name: cell.strip() for name, cell in zip(header, cells, strict=True)}
-            yield reader.line_num, row[label], [_number(row[name], f"{where}, column {name}") for name in numbers]
+            given = [name for name in numbers if name in row]
+            values = {name: _number(row[name], f"{where}, column {name}") for name in given}
+            yield reader.line_num, {label: row[label]} | values
     except csv.Error as error:
         raise InputError(str(error), where=f"{file}, line {reader.line_num}", accepted="CSV") from None
 

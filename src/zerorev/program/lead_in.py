@@ -24,6 +24,7 @@ __all__ = ["LeadIn", "find_lead_in"]
 SAMPLES = 201  # per look
 CLOSE_ENOUGH = 1e-8  # [m] to which the end of a shortened lead-in is located
 STEP = 1e-6  # [m] down to a multiple of which it is shortened, so that the last bits of the arithmetic are not written
+KEPT = 0.75  # of the way to the trouble: at its end a joint may stand still, and the printed digits would turn it round
 SHORTEST = 1e-4  # [m] a shorter lead-in loads no backlash and only adds a move
 
 
@@ -128,7 +129,7 @@ def find_lead_in(robot: Robot, tool: Tool, plan: HolePlan, wanted: float) -> Lea
         joints = line.path(standoff, anchor)
         trouble = line.trouble(standoff, joints) or _Trouble(SAMPLES - 1, why)
     located = float(standoff[max(trouble.sample - 1, 0)] - line.depth) if trouble else 0.0
-    length = float(np.floor(located / STEP) * STEP)
+    length = float(np.floor(KEPT * located / STEP) * STEP)
     if length < SHORTEST:
         length, first = 0.0, line.joints
     else:

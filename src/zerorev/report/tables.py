@@ -11,19 +11,20 @@ from rich.table import Table
 from rich.text import Text
 
 from zerorev.model.conversion import robot_data
-from zerorev.model.plan import Finding, HolePlan, Plan, Score
+from zerorev.model.job import Settings
+from zerorev.model.plan import Finding, HolePlan, Level, Plan
 from zerorev.model.robot import Robot
 
 __all__ = [
-    "failed_checks",
     "finding_lines",
-    "open_proofs",
+    "hole_findings",
     "plan_table",
     "robot_heading",
     "robot_lines",
     "robot_sheet",
     "robot_table",
     "robots_table",
+    "slowest",
 ]
 
 PROOFS = {"certified": "green", "undecided": "yellow", "refuted": "bold red"}
@@ -33,7 +34,7 @@ HOLES_NAMED = 6
 
 
 def plan_table(plan: Plan) -> Table:
-    """One row a hole: reversals, travel, branch, spins, slowest joint, and the outcome of the check."""
+    """One row a hole: reversals, travel, branch, spins, slowest joint, deepest stroke, and the outcome of the check."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("hole"), no_wrap=True)
     table.add_column(Text("reversals\nbaseline → plan"), justify="right")
@@ -41,6 +42,7 @@ def plan_table(plan: Plan) -> Table:
     table.add_column(Text("branch"), justify="right")
     table.add_column(Text("spins\n[deg]"), justify="right")
     table.add_column(Text("slowest joint\n[deg/mm]"), justify="right")
+    table.add_column(Text("deepest\n[mm]"), justify="right")
     table.add_column(Text("verified"))
     for hole in plan.holes:
         table.add_row(Text(hole.hole.id), *_cells(plan, hole))
@@ -50,7 +52,8 @@ def plan_table(plan: Plan) -> Table:
 def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
     motion, score = hole.motion, hole.score
     if motion is None or score is None:
-        return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(("infeasible", *"–––––"))]
+        cells = ("infeasible", *"––––", _deepest(hole), "–")
+        return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
     before = "?" if hole.baseline is None else str(hole.baseline.reversals)
     spins = "  ".join(_number(spin, 2) for spin in np.rad2deg(motion.profile.psi))
     checked = hole.verified
@@ -59,24 +62,20 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         verdict = Text("FAILED", style="bold red")
     if hole.certificate is not None:
         verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
+    slow = slowest(hole, plan.settings)
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
         Text(_number(np.rad2deg(score.travel), 1)),
         Text(str(motion.branch)),
         Text(spins),
-        Text(_slowest(plan, score)),
+        Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
+        Text(_deepest(hole)),
         verdict,
     ]
 
 
-def _slowest(plan: Plan, score: Score) -> str:
-    """The slowest of the joints that do not reverse, by the rule of the motion threshold."""
-    rates = score.min_rate if plan.settings.min_rate_rule == "pointwise" else score.mean_rate
-    steady = [i for i in range(6) if score.reversals_per_joint[i] == 0 and np.isfinite(rates[i])]
-    if not steady:
-        return "–"
-    slowest = min(steady, key=lambda i: float(rates[i]))
-    return f"{_number(np.rad2deg(rates[slowest]) * 1e-3, 4)} {plan.robot.joint_names[slowest]}"
+def _deepest(hole: HolePlan) -> str:
+    return "–" if hole.deepest is None else _number(hole.deepest * 1e3, 1)
 
 
 def finding_lines(findings: Iterable[Finding]) -> list[Text]:
@@ -97,25 +96,26 @@ def finding_lines(findings: Iterable[Finding]) -> list[Text]:
     return lines
 
 
-def failed_checks(plan: Plan) -> list[Finding]:
-    """What the independent check found wrong, as findings; without those that the plan already holds."""
-    found = [
-        Finding("error", "verification", failure, hole.hole.id)
-        for hole in plan.holes
-        if hole.verified is not None and not hole.verified.passed
-        for failure in hole.verified.failures or ("the check failed",)
-    ]
-    return [finding for finding in found if finding not in plan.all_findings]
+def hole_findings(hole: HolePlan) -> list[Finding]:
+    """What is to be said of one hole: its findings, what its check found wrong, and what its certificate left open."""
+    found = list(hole.findings)
+    if hole.verified is not None and not hole.verified.passed:
+        failures = hole.verified.failures or ("the check failed",)
+        failed = [Finding("error", "verification", failure, hole.hole.id) for failure in failures]
+        found += [finding for finding in failed if finding not in found]
+    if hole.certificate is not None:
+        level: Level = "error" if hole.certificate.verdict == "refuted" else "warning"
+        found += [Finding(level, "certificate", reason, hole.hole.id) for reason in hole.certificate.reasons]
+    return found
 
 
-def open_proofs(plan: Plan) -> list[Finding]:
-    """What the certificates refute, as errors, and what they leave undecided, as warnings."""
-    return [
-        Finding("error" if hole.certificate.verdict == "refuted" else "warning", "certificate", reason, hole.hole.id)
-        for hole in plan.holes
-        if hole.certificate is not None
-        for reason in hole.certificate.reasons
-    ]
+def slowest(hole: HolePlan, settings: Settings) -> tuple[float, int] | None:
+    """Rate [rad/m] and index of the slowest joint that does not reverse, by the rule of the motion threshold."""
+    if hole.score is None:
+        return None
+    rates = hole.score.min_rate if settings.min_rate_rule == "pointwise" else hole.score.mean_rate
+    steady = [(float(rates[i]), i) for i in range(6) if hole.score.reversals_per_joint[i] == 0]
+    return min((pair for pair in steady if np.isfinite(pair[0])), default=None)
 
 
 def _named(holes: Sequence[str]) -> str:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
+import shutil
 import sys
+import time
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console
@@ -19,6 +22,7 @@ __all__ = [
     "note",
     "notices",
     "out",
+    "print_file",
     "print_json",
     "print_lines",
     "progress",
@@ -27,6 +31,7 @@ __all__ = [
 ]
 
 PIPED_WIDTH = 160  # columns of a table that goes to no terminal
+SECONDS_BETWEEN_LINES = 10.0
 
 
 class _Console(Console):
@@ -83,19 +88,73 @@ def print_json(data: Any) -> None:
     sys.stdout.write(json_text(data))
 
 
+def print_file(path: Path) -> None:
+    """A text file as it stands, for machines."""
+    with path.open(encoding="utf-8") as stream:
+        shutil.copyfileobj(stream, sys.stdout)
+
+
 @contextlib.contextmanager
 def progress(what: str, total: int) -> Iterator[Callable[[int, int], None] | None]:
-    """A bar on a terminal where there is more than one hole; else nothing."""
+    """How far it is, how fast, and how long it takes yet: a bar on a terminal, a line now and then elsewhere.
+
+    What is called with (done, total) the first time counts as done before.
+    """
     console = err()
-    if total < 2 or not console.is_terminal:
+    if total < 2:
         yield None
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    if not console.is_terminal:
+        yield _Lines(what)
+        return
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, Task, TextColumn, TimeRemainingColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    class Rate(TextColumn):
+        """Holes a second."""
+
+        def render(self, task: Task) -> Text:
+            """Of the last half minute."""
+            return Text("" if task.speed is None else f"{_rate(task.speed)}, left:")
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(""), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(what, total=total)
-        yield lambda done, of: bar.update(task, completed=done, total=of)
+        tasks: list[Any] = []
+
+        def tell(done: int, of: int) -> None:
+            if not tasks:
+                tasks.append(bar.add_task(what, completed=done, total=of))
+            bar.update(tasks[0], completed=done, total=of)
+
+        yield tell
+
+
+class _Lines:
+    """Progress as lines of a log, for work that takes long."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+        self.began: tuple[float, int] | None = None
+        self.told = 0.0
+
+    def __call__(self, done: int, of: int) -> None:
+        now = time.monotonic()
+        if self.began is None:
+            self.began, self.told = (now, done), now
+        if now - self.told < SECONDS_BETWEEN_LINES or done == of:
+            return
+        self.told = now
+        rate = (done - self.began[1]) / (now - self.began[0])
+        left = f", {_duration((of - done) / rate)} left" if rate > 0 else ""
+        note(f"{self.what}: {done} of {of} holes, {_rate(rate)}{left}")
+
+
+def _rate(per_second: float) -> str:
+    return f"{per_second:.1f} holes/s" if per_second >= 1 or per_second == 0 else f"{1 / per_second:.1f} s/hole"
+
+
+def _duration(seconds: float) -> str:
+    minutes, seconds = divmod(round(seconds), 60)
+    return f"{minutes // 60} h {minutes % 60} min" if minutes >= 60 else f"{minutes} min {seconds} s"
 
 
 @contextlib.contextmanager

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from zerorev.evaluation import Evaluation, evaluate, meets_threshold
 from zerorev.kernels import fan as fans
 from zerorev.kernels import legs, pairs
+from zerorev.kernels.field import ROOM
 from zerorev.kinematics import TwistPlane, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -29,20 +30,21 @@ from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.line import climb, edge, golden
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, straight_motion, target_spins
 
 __all__ = ["Found", "can_run", "search"]
 
 GRID = 240  # spins at the target in one turn
-COARSE_NODES, NODES, FINE_NODES = 13, 25, 97  # points on a leg: looking over, going down, the last polish
-DESCENT_STEPS = 16  # golden section from two steps of the grid to some 0.001 deg
-POLISH_STEPS = 10
+COARSE_NODES, NODES, FINE_NODES = 12, 24, 96  # points on a leg: looking over, going down, the last polish
+DESCENT_STEPS = 10  # golden section from two steps of the grid to some 0.02 deg
+POLISH_STEPS, FINE_STEPS = 16, 12  # the same from there to 3e-5 deg, and on fine legs to 6e-6 deg
+MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
 CANDIDATES = 8  # valleys gone down, at most
 SEEDS, MOST_SEEDS = 6, 24  # pairs of the grid that are refined, where joints have to reverse: good ones, all
 PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
 PATTERNS = 3  # sets of reversing joints, equal in cost, of which the best motion is looked for
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
+WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
 
 
@@ -100,8 +102,6 @@ class Fan(NamedTuple):
         critical: whether a slope is a critical rate, shape (4, K, MAX_FAN).
         fits: whether a leg can be run within the limits on either wrist flip, shape (4, K, MAX_FAN, 2).
         counts: how many slopes there are, shape (4, K).
-        kappa: critical rates at the target [rad/m], shape (4, K, 6).
-        sense: signs of theta_psi at the target on the unflipped wrist, shape (4, K, 6).
     """
 
     legs: Array
@@ -109,8 +109,6 @@ class Fan(NamedTuple):
     critical: npt.NDArray[np.bool_]
     fits: npt.NDArray[np.bool_]
     counts: npt.NDArray[np.int64]
-    kappa: Array
-    sense: Array
 
 
 class _Pair(NamedTuple):
@@ -121,6 +119,12 @@ class _Pair(NamedTuple):
     psi_t: float
     above: float
     below: float
+
+    @classmethod
+    def of(cls, row: Array) -> _Pair:
+        """From a row that `kernels.pairs` writes."""
+        branch = int(row[pairs.BRANCH])
+        return cls(row[pairs.VALUE], branch, row[pairs.SPIN], row[pairs.SLOPE_ABOVE], row[pairs.SLOPE_BELOW])
 
 
 def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | None:
@@ -167,7 +171,7 @@ class _Problem:
         self.plane: TwistPlane = twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
         self.weights = np.array(settings.reversal_weights, dtype=float)
-        self._fans: dict[bool, Fan] = {}
+        self._fan: Fan | None = None
         self.periodic = settings.psi_bound is None
         self.psi = target_spins(settings.psi_bound, GRID)
 
@@ -229,9 +233,7 @@ class _Problem:
         """Cost, lack, value and slopes of the best pair of the grid at every spin, shape (8, K, 5) (theory §3)."""
         out = np.empty((8, self.psi.size, 5))
         asked, mode = self.objective()
-        fans.survey(
-            self.robot.arm, self.plane, self.psi, self.fan(between=True), self.weights, asked, mode, self.branches, out
-        )
+        fans.survey(self.robot.arm, self.plane, self.psi, self.fan, self.weights, asked, mode, self.branches, out)
         return out
 
     def surveyed(self) -> list[Found]:
@@ -269,23 +271,21 @@ class _Problem:
                 break
         return found
 
-    def fan(self, *, between: bool) -> Fan:
+    @property
+    def fan(self) -> Fan:
         """Legs out of every spin of the grid, followed once."""
-        if between not in self._fans:
+        if self._fan is None:
             shape = (4, self.psi.size, fans.MAX_FAN)
-            fan = Fan(
+            self._fan = Fan(
                 legs=np.empty((*shape, legs.ROWS, 6)),
                 slopes=np.empty(shape),
                 critical=np.zeros(shape, dtype=np.bool_),
                 fits=np.zeros((*shape, 2), dtype=np.bool_),
                 counts=np.zeros(shape[:2], dtype=np.int64),
-                kappa=np.empty((*shape[:2], 6)),
-                sense=np.empty((*shape[:2], 6)),
             )
             asked = self.asked(0.0)
-            fans.follow(self.robot.arm, self.plane, self.psi, between, asked, COARSE_NODES, self.branches, fan)
-            self._fans[between] = fan
-        return self._fans[between]
+            fans.follow(self.robot.arm, self.plane, self.psi, asked, COARSE_NODES, self.branches, self._fan)
+        return self._fan
 
     def objective(self, *, turn_inside: bool = False) -> tuple[Asked, int]:
         """What the settings ask of the legs, and what makes one better than another."""
@@ -300,7 +300,7 @@ class _Problem:
 
     def _can_keep(self, keep: Array) -> bool:
         """Whether the coarse look finds any pair that keeps these joints."""
-        return bool((self._scan(keep, self.asked(0.0, turn_inside=True))[..., 1] > 0).any())
+        return bool((self._look(keep, self.asked(0.0, turn_inside=True), legs.TRAVEL)[1] > 0).any())
 
     def keeping(self, keep: Array, turn_inside: bool) -> Found | None:
         """The best motion that keeps a set of joints, or None: the threshold first, then the objective."""
@@ -316,55 +316,65 @@ class _Problem:
             pair = self._best(keep, asked, mode)
         return None if pair is None else self._polished(keep, asked, mode, pair)
 
-    def _scan(self, keep: Array, asked: Asked) -> Array:
-        out = np.empty((8, self.psi.size, 2))
-        fans.look(self.fan(between=not keep.all()), keep, asked, out)
-        return out
+    def _look(self, keep: Array, asked: Asked, mode: int) -> tuple[Array, Array, Array]:
+        """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
+        out = np.empty((4, self.psi.size, 3))
+        lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
+        pairs.look(self.robot.arm, self.plane, self.psi, lines, keep, asked, mode, out)
+        value, margin, guess = np.moveaxis(out, -1, 0)
+        return value, margin, guess
 
     def _best(self, keep: Array, asked: Asked, mode: int) -> _Pair | None:
         """Go down every valley of the coarse look that may hold the best pair."""
-        travel, margin = np.moveaxis(self._scan(keep, asked), -1, 0)
+        value, margin, guess = self._look(keep, asked, mode)
+        # between the grid's spins, too, the margin may just be enough
+        peaks = [(np.inf, -margin[p, n], p, n) for p, n in self._peaks(margin)]
         if mode == legs.GREATEST_MARGIN:
-            peaks = [(b, n) for b, n in self._peaks(margin) if self._may_reach(margin, b, n, 0.0)]
-            valleys = [(-margin[b, n], -margin[b, n], b, n) for b, n in peaks]
+            valleys = peaks
         else:
-            valleys = [(travel[b, n], -margin[b, n], b, n) for b, n in self._peaks(-travel)]
-            # between the grid's spins, too, the margin may just be enough
-            valleys += [
-                (np.inf, -margin[b, n], b, n)
-                for b, n in self._peaks(margin)
-                if margin[b, n] < asked.min_rate and self._may_reach(margin, b, n, asked.min_rate)
-            ]
+            valleys = [(value[p, n], -margin[p, n], p, n) for p, n in self._peaks(-value)]
+            valleys += [peak for peak in peaks if value[peak[2:]] == np.inf]
         best: _Pair | None = None
         vain, patience = 0, LONG_PATIENCE if keep.all() else PATIENCE
-        in_vain: set[tuple[int, int]] = set()  # the wrist flips share their legs, so what one cannot keep neither can
-        for looked_at, (rough, _, branch, n) in enumerate(sorted(valleys)):
-            if (branch // 2, n) in in_vain or vain == patience:
+        step = self.psi[1] - self.psi[0]
+        gone_down: list[tuple[int, float, float]] = []  # posture, and the spins between which all was looked at
+        for looked_at, (rough, _, posture, n) in enumerate(sorted(valleys)):
+            spin = self.psi[n]
+            if vain == patience or not self._may_reach(margin, posture, n, asked.min_rate):
                 continue
-            if best is not None and np.isfinite(rough) and looked_at >= CANDIDATES:
+            if best is not None and mode != legs.GREATEST_MARGIN:
+                if looked_at >= CANDIDATES and rough < np.inf:
+                    continue
+                if best.value < min(rough / WORTH_A_LOOK, guess[posture, n] / WORTH_A_GUESS):
+                    continue
+            if any(posture == other and low <= spin <= high for other, low, high in gone_down):
                 continue
-            if best is not None and mode == legs.TRAVEL and WORTH_A_LOOK * best.value < rough < np.inf:
-                continue
-            pair = self._descend(keep, asked, mode, int(branch), n)
+            bound = np.inf if best is None else best.value
+            pair = self._descend(keep, asked, mode, posture, n, bound)
+            if pair is None and rough < np.inf:
+                # the limits cut the bottom off, which the grid does not know in full: where the valley begins to do
+                shoulders = self._shoulders(keep, asked, mode, value[posture], posture, n)
+                pairs_there = [self._descend(keep, asked, mode, posture, m, bound) for m in shoulders]
+                pair = min((one for one in pairs_there if one is not None), default=None)
             vain += pair is None
-            if pair is None and margin[branch, n] == margin[branch ^ 1, n]:
-                in_vain.add((branch // 2, n))
+            if pair is not None:
+                gone_down.append((posture, min(spin, pair.psi_t) - step / 2, max(spin, pair.psi_t) + step / 2))
             if pair is not None and (best is None or pair.value < best.value - 1e-9):
                 best = pair
         return best
 
     def _peaks(self, height: Array) -> list[tuple[int, int]]:
-        """Branch and grid index of every local maximum of `height`, shape (8, K), that is not -inf."""
+        """Posture and grid index of every local maximum of `height`, shape (4, K), that is not -inf."""
         left, right = np.roll(height, 1, axis=1), np.roll(height, -1, axis=1)
         if not self.periodic:
             left[:, 0] = right[:, -1] = -np.inf
-        found = np.argwhere((height > -np.inf) & (height >= left) & (height > right))
         # a plateau across the whole circle has no strict right side
-        return [(int(b), int(n)) for b, n in found]
+        found = np.argwhere((height > -np.inf) & (height >= left) & (height > right))
+        return [(int(p), int(n)) for p, n in found]
 
-    def _may_reach(self, margin: Array, branch: int, n: int, wanted: float) -> bool:
+    def _may_reach(self, margin: Array, posture: int, n: int, wanted: float) -> bool:
         """Whether the margin, which varies from one grid spin to the next, may reach `wanted` in between."""
-        row, k = margin[branch], self.psi.size
+        row, k = margin[posture], self.psi.size
         if row[n] >= wanted:
             return True
         around = [row[(n + d) % k] for d in (-2, -1, 1, 2) if self.periodic or 0 <= n + d < k]
@@ -372,59 +382,84 @@ class _Problem:
         variation = max((abs(row[n] - value) for value in known), default=np.inf)
         return bool(row[n] + 2 * variation >= wanted)
 
-    def _pair(self, keep: Array, asked: Asked, mode: int, branch: int, psi_t: float, nodes: int) -> tuple[_Pair, float]:
-        out = np.empty(4)
-        pairs.best_pair(self.robot.arm, self.plane, branch, psi_t, keep, asked, asked.unlimited(), mode, nodes, out)
-        return _Pair(out[pairs.VALUE], branch, psi_t, out[pairs.SLOPE_ABOVE], out[pairs.SLOPE_BELOW]), float(
-            out[pairs.MARGIN]
-        )
-
-    def _descend(self, keep: Array, asked: Asked, mode: int, branch: int, n: int) -> _Pair | None:
+    def _descend(self, keep: Array, asked: Asked, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
         """The bottom of the valley around one spin of the grid."""
         step = self.psi[1] - self.psi[0]
-
-        def value(psi_t: float) -> float:
-            return self._pair(keep, asked, mode, branch, psi_t, NODES)[0].value
-
-        def lack(psi_t: float) -> float:
-            return asked.min_rate - self._pair(keep, asked, legs.GREATEST_MARGIN, branch, psi_t, NODES)[1]
-
         low, high = self.psi[n] - step, self.psi[n] + step
+        for _ in range(MOST_SHIFTS):
+            pair = self._bottom(keep, asked, mode, posture, low, high, NODES, DESCENT_STEPS, bound)
+            if pair is None or low + 0.02 * step < pair.psi_t < high - 0.02 * step:
+                break
+            # the rough look was mistaken about where the bottom is: go on over the edge
+            low, high = (pair.psi_t - step, pair.psi_t + step)
+        return pair
+
+    def _shoulders(self, keep: Array, asked: Asked, mode: int, value: Array, posture: int, n: int) -> list[int]:
+        """The nearest spins of the grid to either side of one, within its valley, at which some pair will do."""
+        found, row, work = [], np.empty(pairs.COLUMNS), np.empty(ROOM)
+        for side in (-1, 1):
+            for away in range(1, MOST_SHIFTS + 1):
+                m = n + side * away
+                if not (self.periodic or 0 <= m < self.psi.size) or value[m % self.psi.size] == np.inf:
+                    break
+                pairs.best_pair(
+                    self.robot.arm, self.plane, posture, self.psi[m % self.psi.size], keep, asked, asked.unlimited(),
+                    self.branches, mode, NODES, np.inf, False, work, row,
+                )  # fmt: skip
+                if np.isfinite(row[pairs.VALUE]):
+                    found.append(m % self.psi.size)
+                    break
+        return found
+
+    def _bottom(
+        self,
+        keep: Array,
+        asked: Asked,
+        mode: int,
+        posture: int,
+        low: float,
+        high: float,
+        nodes: int,
+        steps: int,
+        bound: float = np.inf,
+    ) -> _Pair | None:
+        """The best pair between two spins, or None where none will do."""
         if not self.periodic:
             low, high = max(low, self.psi[0]), min(high, self.psi[-1])
-        inside = float(self.psi[n])
-        if not np.isfinite(value(inside)):
-            inside = climb(lack, low, high, DESCENT_STEPS)
-            if not np.isfinite(value(inside)):
-                return None
-        low, high = edge(value, inside, low, DESCENT_STEPS), edge(value, inside, high, DESCENT_STEPS)
-        bottom = golden(value, low, high, DESCENT_STEPS)
-        return min(self._pair(keep, asked, mode, branch, psi, NODES)[0] for psi in (bottom, inside, low, high))
+        row = np.empty(pairs.COLUMNS)
+        pairs.descend(
+            self.robot.arm, self.plane, posture, low, high, keep, asked, asked.unlimited(), self.branches, mode,
+            nodes, steps, bound, False, row,
+        )  # fmt: skip
+        return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 
     def _polished(self, keep: Array, asked: Asked, mode: int, pair: _Pair) -> Found | None:
         """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
         wanted = asked.min_rate
+        around = 0.02 * (self.psi[1] - self.psi[0])
+        pair = (
+            self._bottom(
+                keep, asked, mode, pair.branch // 2, pair.psi_t - around, pair.psi_t + around, NODES, POLISH_STEPS
+            )
+            or pair
+        )
+        around /= 30
+        found, shy = None, LIMIT_SLACK
         for _ in range(6):
-            around = 0.02 * (self.psi[1] - self.psi[0])
             low, high = pair.psi_t - around, pair.psi_t + around
-            if not self.periodic:
-                low, high = max(low, self.psi[0]), min(high, self.psi[-1])
-
-            def value(psi_t: float, asked: Asked = asked) -> float:
-                return self._pair(keep, asked, mode, pair.branch, psi_t, FINE_NODES)[0].value
-
-            psi_t = golden(value, low, high, POLISH_STEPS)
-            fine = min(self._pair(keep, asked, mode, pair.branch, psi, FINE_NODES)[0] for psi in (psi_t, pair.psi_t))
-            found = self._found(fine if np.isfinite(fine.value) else pair)
+            fine = self._bottom(keep, asked, mode, pair.branch // 2, low, high, FINE_NODES, FINE_STEPS)
+            found = self._found(pair if fine is None else fine)
             if found is not None and found.evaluation.score is not None:
                 score = found.evaluation.score
                 turned = np.array(score.reversals_per_joint)[keep].sum()
                 rates = score.min_rate[keep] if not asked.mean_rule else score.mean_rate[keep]
                 short = wanted - rates.min(initial=np.inf)
-                if not turned and short <= 0:
+                if not turned and short <= 1e-9 * wanted:
                     return found
             else:
-                turned, short = 0, 0.0
+                # over a limit by what the nodes do not see
+                short, shy = 0.0, 4.0 * shy
+                asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
             # the sampled legs did not see the lowest point: ask for what was missing, and look again
             asked = asked._replace(min_rate=asked.min_rate + max(1.5 * short, LEAST_RATE))
         return found

@@ -1,4 +1,4 @@
-"""The arm in ball arithmetic: joint rates and angles along a path, as numbers or as Taylor series.
+"""The arm in ball arithmetic: joint rates and angles of a pose in motion, as numbers or as Taylor series.
 
 One set of formulas serves both kinds of `Ball`: an `arb` gives a rigorous enclosure at a point, an `arb_series` one of
 every Taylor coefficient. The rates need the cosines and sines of the joints alone, and these come out of the pose
@@ -8,19 +8,18 @@ then left of the tool's turning is the wrist's. Written apart from the kernels a
 
 from __future__ import annotations
 
-from typing import Generic, NamedTuple, TypeVar
+from collections.abc import Sequence
+from typing import Generic, NamedTuple
 
-from flint import arb, arb_series
+from flint import arb
 
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.robot import ArmGeometry
-from zerorev.model.tool import Tool
+from zerorev.verify.certificate_vector import Axes, Ball, Vector, Vector3, combined, turned
 
-__all__ = ["Body", "Posture", "Setting", "Vector", "angles", "body_at", "posture_of", "rates", "setting_of"]
+__all__ = ["Body", "Pose", "Posture", "Setting", "Twist", "angles", "body_at", "flange_at", "posture_of", "rates"]
 
-Ball = TypeVar("Ball", arb, arb_series)
-Vector = tuple[arb, arb, arb]
+EX, EY, EZ = ((arb(int(k == 0)), arb(int(k == 1)), arb(int(k == 2))) for k in range(3))
 
 
 class Posture(NamedTuple):
@@ -38,24 +37,45 @@ class Posture(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """All that is constant along the motion of one hole: base frame, lengths [m].
+    """What is constant along the motion of one hole.
 
-    At stand-off s and spin psi the wrist centre is wrist[0] + s axis + cos(psi) wrist[1] + sin(psi) wrist[2]; so are
-    the flange's axes, but for s.
+    Attributes:
+        arm: geometry.
+        posture: which way round it reaches.
     """
 
     arm: ArmGeometry
     posture: Posture
-    axis: Vector
-    wrist: tuple[Vector, Vector, Vector]
-    flange: tuple[tuple[Vector, Vector, Vector], ...]
+
+
+class Pose(NamedTuple, Generic[Ball]):
+    """Where the wrist is, base frame.
+
+    Attributes:
+        wrist: the wrist centre [m].
+        axis_6: unit vector along axis 6, from the wrist centre to the flange.
+    """
+
+    wrist: Vector3[Ball]
+    axis_6: Vector3[Ball]
+
+
+class Twist(NamedTuple, Generic[Ball]):
+    """How a pose moves, per unit of some parameter, base frame.
+
+    Attributes:
+        velocity: of the wrist centre [m].
+        turning: of the flange [rad].
+    """
+
+    velocity: Vector3[Ball]
+    turning: Vector3[Ball]
 
 
 class Body(NamedTuple, Generic[Ball]):
     """A pose solved.
 
     Attributes:
-        cos_sin: cosine and sine of the spin.
         ahead: the wrist centre ahead of axis 1 [m].
         height: twice the signed area of the triangle of shoulder, elbow and wrist centre [m^2].
         q1: cosine and sine of q1.
@@ -66,55 +86,20 @@ class Body(NamedTuple, Generic[Ball]):
         squares: the squares of `ahead`, `height` and sin q5; all positive where the pose is in reach and not singular.
     """
 
-    cos_sin: tuple[Ball, Ball]
     ahead: Ball
     height: Ball
     q1: tuple[Ball, Ball]
     q23: tuple[Ball, Ball]
     upper: tuple[Ball, Ball]
     fore: tuple[Ball, Ball]
-    axis_6: tuple[Ball, Ball, Ball]
-    squares: tuple[Ball, Ball, Ball]
+    axis_6: Vector3[Ball]
+    squares: Vector3[Ball]
 
 
-def setting_of(arm: ArmGeometry, tool: Tool, hole: Hole, posture: Posture) -> Setting:
-    """The constants of a motion.
-
-    A plan's unit vectors and rotations are so but for the rounding of its file (4e-12). Here they are made exactly so,
-    by Gram-Schmidt: that is the motion of which the certificate speaks.
-    """
-    axis = _scaled(_vector(-hole.direction))
-    y0 = _across(_vector(hole.psi_zero), axis)
-    x0 = _cross(y0, axis)
-    R, p = tool.T_flange_tcp[:3, :3], _vector(tool.T_flange_tcp[:3, 3])
-    z_tool = _scaled(_vector(R[:, 2]))
-    y_tool = _across(_vector(R[:, 1]), z_tool)
-    tool_axes = _cross(y_tool, z_tool), y_tool, z_tool
-
-    def turned(x: arb, y: arb, z: arb) -> tuple[Vector, Vector, Vector]:
-        """A vector of the tool in the base frame: what is fixed, goes with cos(psi), with sin(psi)."""
-        return (
-            _sum((axis, z)),
-            _sum((x0, x), (y0, y)),
-            _sum((y0, x), (x0, -y)),
-        )
-
-    wrist_in_flange = (-p[0], -p[1], -arb(arm.c4) - p[2])
-    x, y, z = (_dot(wrist_in_flange, column) for column in tool_axes)
-    fixed, cos, sin = turned(x, y, z)
-    centre = _sum((_vector(hole.target), arb(1)), (fixed, arb(1)))
-    flange = tuple(turned(*(column[k] for column in tool_axes)) for k in range(3))
-    return Setting(arm, posture, axis, (centre, cos, sin), flange)
-
-
-def body_at(setting: Setting, standoff: Ball, psi: Ball) -> Body[Ball]:
-    """The pose at stand-off [m] and spin [rad], solved in the setting's posture."""
-    arm, posture = setting.arm, setting.posture
-    sin, cos = psi.sin_cos()
-    centre, with_cos, with_sin = setting.wrist
-    x, y, z = (
-        standoff * setting.axis[k] + cos * with_cos[k] + sin * with_sin[k] + centre[k] for k in range(3)
-    )  # fmt: skip
+def body_at(setting: Setting, pose: Pose[Ball]) -> Body[Ball]:
+    """A pose solved in the setting's posture."""
+    arm, posture = setting
+    x, y, z = pose.wrist
     b, squared = arb(arm.b), x * x + y * y
     ahead_2 = squared - b * b
     ahead = ahead_2.sqrt() * posture.reach
@@ -134,25 +119,16 @@ def body_at(setting: Setting, standoff: Ball, psi: Ball) -> Body[Ball]:
     e, f = arb(arm.c3) / fore_2, arb(arm.a2) / fore_2
     c23, s23 = fore[0] * e + fore[1] * f, fore[1] * e - fore[0] * f
 
-    axis_6 = _from_forearm((c1, s1), (c23, s23), _flange_axis(setting, 2, cos, sin))
+    axis_6 = _from_forearm((c1, s1), (c23, s23), pose.axis_6)
     sine_2 = axis_6[0] * axis_6[0] + axis_6[1] * axis_6[1]
     squares = ahead_2, height_2, sine_2
-    return Body((cos, sin), ahead, height, (c1, s1), (c23, s23), upper, fore, axis_6, squares)
+    return Body(ahead, height, (c1, s1), (c23, s23), upper, fore, axis_6, squares)
 
 
-def rates(setting: Setting, body: Body[Ball], standoff_rate: Ball, psi_rate: Ball) -> list[Ball]:
-    """Rates of the six controller angles.
-
-    Args:
-        setting: the constants.
-        body: the pose.
-        standoff_rate: of the stand-off, in the path's parameter [m].
-        psi_rate: of the spin [rad].
-    """
-    cos, sin = body.cos_sin
-    (c1, s1), (c23, s23), (_, with_cos, with_sin) = body.q1, body.q23, setting.wrist
-    around = (cos * with_sin[k] - sin * with_cos[k] for k in range(3))
-    vx, vy, vz = (standoff_rate * z + psi_rate * turn for z, turn in zip(setting.axis, around, strict=True))
+def rates(setting: Setting, body: Body[Ball], twist: Twist[Ball]) -> list[Ball]:
+    """Rates of the six controller angles [rad], per unit of the twist's parameter."""
+    (c1, s1), (c23, s23) = body.q1, body.q23
+    (vx, vy, vz), (wx, wy, wz) = twist
     q1 = (c1 * vy - s1 * vx) / body.ahead
     v_out = c1 * vx + s1 * vy + q1 * arb(setting.arm.b)
 
@@ -161,10 +137,7 @@ def rates(setting: Setting, body: Body[Ball], standoff_rate: Ball, psi_rate: Bal
     q2 = -(fore_z * vz + fore_x * v_out) * share
     q23 = (upper_z * vz + upper_x * v_out) * share
 
-    zx, zy, zz = setting.axis
-    turn_x = psi_rate * (c1 * zx + s1 * zy)
-    turn_y = psi_rate * (c1 * zy - s1 * zx) - q23
-    turn_z = psi_rate * zz - q1
+    turn_x, turn_y, turn_z = c1 * wx + s1 * wy, c1 * wy - s1 * wx - q23, wz - q1
     left_x, left_z = c23 * turn_x - s23 * turn_z, s23 * turn_x + c23 * turn_z
     hx, hy, c5 = body.axis_6
     sine_2 = body.squares[2]
@@ -174,15 +147,20 @@ def rates(setting: Setting, body: Body[Ball], standoff_rate: Ball, psi_rate: Bal
     return [rate * int(sign) for rate, sign in zip((q1, q2, q23 - q2, q4, q5, q6), setting.arm.sign, strict=True)]
 
 
-def angles(setting: Setting, body: Body[arb]) -> list[arb]:
-    """The six controller angles [rad], turns as they fall."""
+def angles(setting: Setting, body: Body[arb], flange: Axes) -> list[arb]:
+    """The six controller angles [rad], turns as they fall.
+
+    Args:
+        setting: arm and posture.
+        body: the pose, solved.
+        flange: axes of the flange, base frame.
+    """
     (c1, s1), (c23, s23), flip = body.q1, body.q23, setting.posture.flip
     hx, hy, c5 = body.axis_6
     sine = body.squares[2].sqrt()
     c4, s4 = hx * flip / sine, hy * flip / sine
-    cos, sin = body.cos_sin
     # axis 5 is (-s4, c4, 0) seen from the forearm; axes x and y of the flange turn about axis 6 from it
-    x, y = (_from_forearm(body.q1, body.q23, _flange_axis(setting, k, cos, sin)) for k in (0, 1))
+    x, y = (_from_forearm(body.q1, body.q23, axis) for axis in flange[:2])
     q2 = _angle(body.upper[1], body.upper[0])
     q = (
         _angle(s1, c1),
@@ -208,6 +186,26 @@ def posture_of(arm: ArmGeometry, joints: Array) -> Posture | None:
     return Posture(*signs) if all(signs) else None
 
 
+def flange_at(arm: ArmGeometry, joints: Sequence[arb]) -> tuple[Vector, Axes]:
+    """Origin [m] and axes of the flange at six controller angles [rad], link by link from the flange inwards."""
+    q = [joint * int(sign) - arb(offset) for joint, sign, offset in zip(joints, arm.sign, arm.offset, strict=True)]
+    zero = arb(0)
+    links = (
+        (EZ, (arb(arm.a1), zero, arb(arm.c1))),
+        (EY, (zero, zero, arb(arm.c2))),
+        (EY, (arb(arm.a2), arb(arm.b), arb(arm.c3))),
+        (EZ, (zero, zero, zero)),
+        (EY, (zero, zero, zero)),
+        (EZ, (zero, zero, arb(arm.c4))),
+    )
+    origin, x, y, z = (zero, zero, zero), EX, EY, EZ
+    for (axis, link), angle in zip(reversed(links), reversed(q), strict=True):
+        sin, cos = angle.sin_cos()
+        shifted = combined((origin, arb(1)), (link, arb(1)))
+        origin, x, y, z = (turned(v, axis, cos, sin) for v in (shifted, x, y, z))
+    return origin, (x, y, z)
+
+
 def _sign(value: arb) -> int:
     """+1 or -1 where that is proven, else 0."""
     return 1 if value > 0 else -1 if value < 0 else 0
@@ -220,43 +218,8 @@ def _angle(sine: arb, cosine: arb) -> arb:
     return arb.atan2(sine, cosine)
 
 
-def _flange_axis(setting: Setting, k: int, cos: Ball, sin: Ball) -> tuple[Ball, Ball, Ball]:
-    fixed, with_cos, with_sin = setting.flange[k]
-    x, y, z = (cos * with_cos[i] + sin * with_sin[i] + fixed[i] for i in range(3))
-    return x, y, z
-
-
-def _from_forearm(
-    q1: tuple[Ball, Ball], q23: tuple[Ball, Ball], vector: tuple[Ball, Ball, Ball]
-) -> tuple[Ball, Ball, Ball]:
+def _from_forearm(q1: tuple[Ball, Ball], q23: tuple[Ball, Ball], vector: Vector3[Ball]) -> Vector3[Ball]:
     """A vector of the base frame in the frame that axes 1 to 3 have turned."""
     (c1, s1), (c23, s23), (x, y, z) = q1, q23, vector
     out = c1 * x + s1 * y
     return c23 * out - s23 * z, c1 * y - s1 * x, s23 * out + c23 * z
-
-
-def _vector(values: Array) -> Vector:
-    x, y, z = (arb(float(value)) for value in values)
-    return x, y, z
-
-
-def _dot(a: Vector, b: Vector) -> arb:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def _cross(a: Vector, b: Vector) -> Vector:
-    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
-
-
-def _sum(*terms: tuple[Vector, arb]) -> Vector:
-    x, y, z = (sum((vector[k] * factor for vector, factor in terms), arb(0)) for k in range(3))
-    return x, y, z
-
-
-def _scaled(vector: Vector) -> Vector:
-    return _sum((vector, 1 / _dot(vector, vector).sqrt()))
-
-
-def _across(vector: Vector, axis: Vector) -> Vector:
-    """The part of a vector across a unit axis, made unit."""
-    return _scaled(_sum((vector, arb(1)), (axis, -_dot(vector, axis))))

@@ -89,7 +89,8 @@ class Joints:
         return np.asarray(np.nextafter(room, np.inf))
 
     def _angles(self, arc: Arc, t: float) -> list[arb]:
-        return angles(self.setting, body_at(self.setting, *arc.at(t)))
+        pose, flange = arc.at(t)
+        return angles(self.setting, body_at(self.setting, pose), flange)
 
     def _off(self, joints: list[arb], knot: int, place: str) -> Iterator[str]:
         for name, found, stated in zip(self.robot.joint_names, joints, self.stated[knot], strict=True):

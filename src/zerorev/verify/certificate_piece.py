@@ -70,7 +70,7 @@ def enclose(setting: Setting, arc: Arc, begin: float, end: float) -> Piece | Non
     """Bounds on the piece between two parameters; None where it is not proven in reach and free of singularities.
 
     Args:
-        setting: the constants of the motion.
+        setting: arm and posture.
         arc: the arc.
         begin: parameter, a dyadic number.
         end: a greater one.
@@ -105,9 +105,9 @@ def bounds(balls: list[list[arb]]) -> tuple[Array, Array]:
 def _rates(setting: Setting, arc: Arc, t: arb, half: arb, terms: int) -> tuple[Body[arb_series], list[arb_series]]:
     """The pose and the rates as series in x, of so many terms, where the parameter of the arc is t + half x."""
     ctx.cap = terms
-    standoff, psi, standoff_rate, psi_rate = arc.around(t, half)
-    body = body_at(setting, standoff, psi)
-    return body, rates(setting, body, standoff_rate, psi_rate)
+    pose, twist = arc.around(t, half)
+    body = body_at(setting, pose)
+    return body, rates(setting, body, twist)
 
 
 @cache

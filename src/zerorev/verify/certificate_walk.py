@@ -20,7 +20,7 @@ from zerorev.verify.certificate_piece import Piece, bounds, enclose
 
 __all__ = ["LostError", "Slowest", "Stretch", "Walk"]
 
-TURN_A_PIECE = float(np.deg2rad(2.0))  # [rad] of spin in the first pieces
+TURN_A_PIECE = float(np.deg2rad(2.0))  # [rad] of the tool in the first pieces
 PATH_A_PIECE = 8e-3  # [m] of path in the first pieces
 HALVINGS = 40  # of one piece at most
 FINE_HALVINGS = 10  # at most for a tighter bound alone
@@ -73,7 +73,7 @@ class Walk:
     """What is known so far; joints are counted from 0.
 
     Attributes:
-        setting: the constants of the motion.
+        setting: arm and posture.
         names: of the joints.
         followed: joints that must keep one direction; one that fails to, or that cannot be decided, leaves.
         budget: how many pieces may be looked at.
@@ -133,7 +133,7 @@ class Walk:
     def _pieces(self, arc: Arc, slowest: Slowest) -> Iterator[Piece]:
         """The pieces of an arc in order, each fine enough."""
         first = 1
-        turn, path = abs(float(arc.psi[1])) + abs(float(arc.psi[2])), float(arc.length)
+        turn, path = arc.turn(), float(arc.length)
         while first * TURN_A_PIECE < turn or first * PATH_A_PIECE < path:
             first *= 2
             if first > self.budget:
@@ -187,6 +187,6 @@ class Walk:
 
     def _must_be_in_reach(self, arc: Arc, t: float) -> None:
         """Raise where the wrist centre is proven out of reach at the parameter t."""
-        ahead_2, height_2, _ = body_at(self.setting, *arc.at(t)).squares
+        ahead_2, height_2, _ = body_at(self.setting, arc.at(t)[0]).squares
         if ahead_2 < 0 or height_2 < 0:
             raise LostError(f"out of reach {arc.place(t)}", proven=True)

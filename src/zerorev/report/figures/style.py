@@ -32,6 +32,7 @@ __all__ = [
     "MUTED",
     "bare_axes",
     "deg_per_mm",
+    "headed_figure",
     "label",
     "legend_below",
     "motion_of",
@@ -83,13 +84,24 @@ def new_figure(title: str, plan: Plan, hole: HolePlan, height: float) -> Figure:
         hole: which is named.
         height: of the figure [inches].
     """
+    return headed_figure(title, _subtitle(plan, hole), height)
+
+
+def headed_figure(title: str, subtitle: str, height: float) -> Figure:
+    """An empty figure with two lines of heading.
+
+    Args:
+        title: what the figure shows.
+        subtitle: of what.
+        height: of the figure [inches].
+    """
     figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     below_heading = (0.005, 0.01, 0.99, 1 - HEADER / height - 0.01)
     figure.set_layout_engine("constrained", rect=below_heading, h_pad=0.05, w_pad=0.05)
     top, left = 1 - 0.1 / height, 0.13 / WIDTH
     figure.text(left, top, title, ha="left", va="top", size=12.5, weight="bold", color=INK)
-    figure.text(left, top - 0.26 / height, _subtitle(plan, hole), ha="left", va="top", size=9.5, color=MUTED,
+    figure.text(left, top - 0.26 / height, subtitle, ha="left", va="top", size=9.5, color=MUTED,
                 parse_math=False)  # fmt: skip
     return figure
 

@@ -1,0 +1,116 @@
+"""Rate fields of the twist plane per pose, beside inverse kinematics alone; before that, the solutions are compared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from benchmarks import arm_numpy
+from benchmarks.cases import Case, positions
+from benchmarks.parts import Options
+from benchmarks.peers.eaik_arm import Eaik
+from benchmarks.peers.opw import Opw
+from benchmarks.table import Goal, Section
+from benchmarks.timing import in_turns
+from zerorev import kinematics
+from zerorev.kernels import field
+from zerorev.model._arrays import Array
+from zerorev.model.robot import Robot
+
+__all__ = ["apart", "run"]
+
+COMPARED = 1_000
+SAME = 1e-6  # [rad]
+LEAST_SINE = 1e-3  # of A5: nearer to the wrist's singularity angles are known less well than that
+
+
+def both_fields(case: Case, standoff: Array, psi: Array) -> tuple[str, Callable[[], Any]]:
+    """What is measured as "both rate fields", and a call that does it. THE place where that kernel is called."""
+    plane, count = kinematics.twist_plane(case.robot, case.tool, case.hole), standoff.size
+    theta_s, theta_psi = np.empty((4, 6, count)), np.empty((4, 6, count))
+
+    def stored() -> None:
+        for posture in range(4):
+            field.rates(case.robot.arm, plane, posture, standoff, psi, theta_s[posture], theta_psi[posture])
+
+    return "zerorev: both rate fields, stored, no limit flags; 4 postures, whose wrist flips share them", stored
+
+
+def run(options: Options) -> Section:
+    """Compare the solutions, then time."""
+    case = positions()[0]
+    robot, rng = case.robot, np.random.default_rng(0)
+    differences = _differences(robot)
+    standoff, psi = rng.uniform(0.0, case.hole.depth, options.poses), rng.uniform(-np.pi, np.pi, options.poses)
+    T = kinematics.tcp_pose(case.hole, standoff, psi) @ np.linalg.inv(case.tool.T_flange_tcp)
+    ours, measure = both_fields(case, standoff, psi)
+    opw, eaik = Opw(robot.arm, T), Eaik(robot.arm, T)
+    work: dict[str, Callable[[int], Any]] = {
+        ours: lambda _: measure(),
+        "zerorev: inverse kinematics": lambda _: kinematics.inverse(robot, T),
+        "py-opw-kinematics (Rust): inverse kinematics, `batch_inverse`": lambda _: opw.nearest(),
+        "py-opw-kinematics (Rust): inverse kinematics, `reach`": lambda _: opw.solutions(),
+        "EAIK (C++): inverse kinematics, `IK_batched`": lambda _: eaik.solve(),
+        "NumPy, vectorised: inverse kinematics": lambda _: arm_numpy.inverse(robot.arm, T),
+    }
+    timed = in_turns(work, options.rounds)
+    first = timed[ours].median
+    per_pose = {
+        name: (each.median / options.poses * 1e9, each.least / options.poses * 1e9) for name, each in timed.items()
+    }
+    return Section(
+        name="field",
+        title="The rate fields, per pose of the twist plane, all eight branches",
+        columns=("work", "median [ns]", "least [ns]", "ratio to the first"),
+        rows=[
+            (name, f"{per_pose[name][0]:.1f}", f"{per_pose[name][1]:.1f}", f"{each.median / first:.1f}")
+            for name, each in timed.items()
+        ],
+        notes=[
+            f"{options.poses:,} poses of position 1 a batch, {options.rounds} rounds. `reach` returns all eight"
+            " solutions, with a smallest singular value of each; `batch_inverse` the one nearest to the pose before."
+            " Before anything is timed the sets of solutions are compared, of"
+            f" {COMPARED:,} random poses each: greatest difference from zerorev's "
+            + ", ".join(f"{value:.1e} rad ({name})" for name, value in differences.items())
+            + "."
+        ],
+        goals=[
+            Goal(
+                "both rate fields, reduced to sign bits and limit flags, 8 branches, per (s, psi) pose",
+                "C++ AVX-512 16.7 ns; plain Numba 24 ns; opw IK alone 270 ns",
+                "30 ns",
+                f"{per_pose[ours][0]:.1f} ns ({ours.partition(': ')[2]})",
+            )
+        ],
+        failures=[
+            f"{name} finds other solutions of the inverse kinematics, {value:.1e} rad apart"
+            for name, value in differences.items()
+            if not value <= SAME
+        ],
+        figures={"ns_per_pose_median_least": per_pose, "apart_rad": differences},
+    )
+
+
+def _differences(robot: Robot) -> dict[str, float]:
+    """How far the solutions of the peers lie from ours [rad]; infinite where their number differs."""
+    joints = np.random.default_rng(1).uniform(robot.limits.lower, robot.limits.upper, (COMPARED, 6))
+    T = kinematics.forward(robot, joints[np.abs(np.sin(joints[:, 4])) > LEAST_SINE])
+    ours = kinematics.inverse(robot, T)
+    theirs = {
+        "py-opw-kinematics": Opw(robot.arm, T).solutions(),
+        "EAIK": Eaik(robot.arm, T).solutions(),
+        "NumPy": arm_numpy.inverse(robot.arm, T),
+    }
+    return {name: apart(ours, solutions) for name, solutions in theirs.items()}
+
+
+def apart(ours: Array, theirs: Array) -> float:
+    """Greatest distance [rad] from any solution to its nearest of the other side, both (N, 8, 6) in any order."""
+    if (np.isnan(ours[..., 0]).sum(axis=1) != np.isnan(theirs[..., 0]).sum(axis=1)).any():
+        return float("inf")
+    between = np.abs(arm_numpy.wrapped(ours[:, :, None] - theirs[:, None])).max(axis=-1)
+    between = np.where(np.isnan(between), np.inf, between)
+    there, back = between.min(axis=2)[~np.isnan(ours[..., 0])], between.min(axis=1)[~np.isnan(theirs[..., 0])]
+    return float(max(there.max(), back.max()))

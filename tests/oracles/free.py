@@ -1,0 +1,67 @@
+"""The slow twin of free legs: spins on a grid, reached by moves from node to node, whatever leads there.
+
+It knows no intervals of slopes and no ends that drift: a move from a node of one row to a node of the next is allowed
+if every joint goes its wanted way at both of its ends. What it reaches is there, but for what happens between two rows;
+slopes are those of the grid alone, so that it gets a little less far than legs can.
+
+Units as in the kernels: m, rad, outward rates in rad/m, controller angles.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev import kinematics
+
+
+def rates_at(robot, tool, hole, branch, standoff, psi):
+    """theta_s and theta_psi of one branch, each (..., 6)."""
+    theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, np.full(np.shape(psi), standoff), psi)
+    return theta_s[..., branch, :], theta_psi[..., branch, :]
+
+
+def keeps(theta_s, theta_psi, slope, sigma, min_rate):
+    """Whether a slope keeps every joint going its way: shape (...,); False where there is no pose."""
+    with np.errstate(invalid="ignore"):
+        return (sigma * (theta_s + slope * theta_psi) >= min_rate).all(axis=-1)
+
+
+def reach(robot, tool, hole, branch, psi_t, sigma, *, step, turn, steepest, min_rate, longest, widest=np.pi):
+    """How far legs out of one spin at the target get [m], by rows of `step` [m] and nodes of `turn` [rad].
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: its twist plane.
+        branch: 0..7.
+        psi_t: spin at the target.
+        sigma: wanted signs of the outward rates, shape (6,).
+        step: between two rows [m].
+        turn: between two nodes [rad].
+        steepest: twist rate [rad/m].
+        min_rate: [rad/m].
+        longest: where to stop [m].
+        widest: how far spins are looked at from psi_t [rad].
+    """
+    half = int(widest / turn)
+    psi = psi_t + turn * np.arange(-half, half + 1)
+    most = int(steepest * step / turn + 1e-9)
+    here = rates_at(robot, tool, hole, branch, 0.0, psi)
+    reached = np.arange(-half, half + 1) == 0
+    for row in range(1, round(longest / step) + 1):
+        there = rates_at(robot, tool, hole, branch, row * step, psi)
+        arrived = np.zeros_like(reached)
+        for move in range(-most, most + 1):
+            slope = move * turn / step
+            leaves = reached & keeps(*here, slope, sigma, min_rate)
+            lands = np.zeros_like(reached)
+            if move >= 0:
+                lands[move:] = leaves[: leaves.size - move]
+            else:
+                lands[:move] = leaves[-move:]
+            if lands.any():
+                arrived |= lands & keeps(*there, slope, sigma, min_rate)
+        if not arrived.any():
+            return (row - 1) * step
+        reached, here = arrived, there
+    return longest
