@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.optimize import linprog
 
 from zerorev.kernels import segments as kernels
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
@@ -231,6 +230,8 @@ class _Problem:
 
     def step(self, legs: Legs, look: _Look, trust: float) -> tuple[Array, float]:
         """The best change of the unknowns within the trusted region, and what it is foretold to gain."""
+        from scipy.optimize import linprog  # half a second of imports that straight legs do without
+
         rules, size = self.rules, self.size
         reach = np.full(size, trust * TRUSTED_TURN)
         reach[0] = trust * TRUSTED_STRETCH * legs.depth if self.goal == "depth" else 0.0
