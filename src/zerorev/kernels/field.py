@@ -54,6 +54,17 @@ def cos_sin(x):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def spun(plane, v0, v1, v2):  # type: ignore[no-untyped-def]
+    """A vector of the tcp frame seen from the base as the tool spins: its constant, its cosine and its sine part."""
+    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
+    return (
+        (zx * v2, zy * v2, zz * v2),
+        (x0 * v0 + y0 * v1, x1 * v0 + y1 * v1, x2 * v0 + y2 * v1),
+        (y0 * v0 - x0 * v1, y1 * v0 - x1 * v1, y2 * v0 - x2 * v1),
+    )
+
+
+@kernel
 def fields(arm, plane, posture, count, work):  # type: ignore[no-untyped-def]
     """Both rate fields of one posture at up to BLOCK points, for sin(q5) > 0.
 
@@ -65,16 +76,14 @@ def fields(arm, plane, posture, count, work):  # type: ignore[no-untyped-def]
         work: in and out, shape (ROOM,): stand-offs [m] and spins [rad] go in; d theta / d s [rad/m] and
             d theta / d psi [1] of the six controller angles come out, NaN where there are none.
     """
-    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
-    f02, f12, f22 = plane.R_tcp_flange[2], plane.R_tcp_flange[5], plane.R_tcp_flange[8]
+    zx, zy, zz = plane.R_base_tcp0[2], plane.R_base_tcp0[5], plane.R_base_tcp0[8]
     w0, w1, w2 = plane.wrist
     t0, t1, t2 = plane.target
-    # flange axis and lever of the spin: a constant, a cosine and a sine part each
-    fcx, fcy, fcz = x0 * f02 + y0 * f12, x1 * f02 + y1 * f12, x2 * f02 + y2 * f12
-    fsx, fsy, fsz = y0 * f02 - x0 * f12, y1 * f02 - x1 * f12, y2 * f02 - x2 * f12
-    fx, fy, fz = zx * f22, zy * f22, zz * f22
-    rcx, rcy, rcz = x0 * w0 + y0 * w1, x1 * w0 + y1 * w1, x2 * w0 + y2 * w1
-    rsx, rsy, rsz = y0 * w0 - x0 * w1, y1 * w0 - x1 * w1, y2 * w0 - x2 * w1
+    # flange axis and lever of the spin
+    (fx, fy, fz), (fcx, fcy, fcz), (fsx, fsy, fsz) = spun(
+        plane, plane.R_tcp_flange[2], plane.R_tcp_flange[5], plane.R_tcp_flange[8]
+    )
+    _, (rcx, rcy, rcz), (rsx, rsy, rsz) = spun(plane, w0, w1, 0.0)
     k2 = arm.a2 * arm.a2 + arm.c3 * arm.c3
     k = np.sqrt(k2)
     per_links = 1.0 / (2.0 * arm.c2 * k)
