@@ -72,7 +72,7 @@ class TestSignFlags:
                 found = bits[:, flags.OUTSIDE : flags.OUTSIDE + 6]
                 np.testing.assert_array_equal(found[clear], beyond[clear])
                 outside += beyond[clear].sum()
-        assert seen > 1000
+        assert seen > (50 if SLOW else 1000)
         assert outside > 1000 * (not SLOW)
 
     def test_blocks_of_any_size_are_the_same(self, robot, positions):
