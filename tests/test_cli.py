@@ -11,7 +11,7 @@ from copy import deepcopy
 import pytest
 import yaml
 
-from zerorev import cli
+from zerorev.cli import common as cli
 from zerorev.cli import main
 from zerorev.model.files import read_plan
 

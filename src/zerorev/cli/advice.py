@@ -1,0 +1,108 @@
+"""`zerorev rates` and `zerorev offset`: what is foretold before any search, and what a tool should look like."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+from zerorev.cli.common import FINE, FOUND, Output, app, need, not_over, numbers
+from zerorev.report import terminal
+
+__all__ = ["offset", "rates"]
+
+
+@app.command
+def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> int:
+    """Show the critical twist rates of each hole and what they foretell, before any search.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
+        json: Print JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+
+    wanted = read_job(job)
+
+    from zerorev.critical import critical_at
+    from zerorev.prediction import predict
+    from zerorev.report import rates as shown
+
+    if psi_deg is not None:
+        at, psi = partial(critical_at, wanted.robot, wanted.tool), math.radians(psi_deg)
+        found = [(hole, each) for hole in wanted.holes for each in at(hole, psi)]
+        if json:
+            terminal.print_json([{"id": hole.id} | shown.rates_data(each) for hole, each in found])
+        else:
+            terminal.out().print(shown.rates_table(wanted, found))
+        return FINE
+    foretold = [predict(wanted.robot, wanted.tool, hole, wanted.settings) for hole in wanted.holes]
+    if json:
+        pairs = zip(wanted.holes, foretold, strict=True)
+        terminal.print_json([shown.foretold_data(hole, each) for hole, each in pairs])
+    else:
+        terminal.out().print(shown.foretold_table(wanted, foretold))
+    return FINE
+
+
+@app.command
+def offset(
+    job: Path,
+    /,
+    *,
+    output: Output = None,
+    offsets_mm: str = "0:200:10",
+    angles_deg: str | None = None,
+    figure: Path | None = None,
+    json: bool = False,
+) -> int:
+    """Find how deep each hole goes as the tool is offset from the wrist, and the least offset that drills the job.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        output: Where to write the answer (JSON). Without it the answer is only shown.
+        offsets_mm: Distances of the drill axis from the wrist centre, START:STOP:STEP or a list: 30,60,90.
+        angles_deg: Where the axis lies as seen from the wrist centre, likewise; by default where it lies now.
+        figure: Picture to draw (PNG).
+        json: Print the answer as JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+    from zerorev.model.output import check_file, write_bytes, write_text
+
+    for path in (output, figure):
+        if path is not None:
+            check_file(path)
+            not_over(path, job)
+    if figure is not None:
+        need("matplotlib", "matplotlib", "--figure", "figures")
+    offsets = [value / 1e3 for value in numbers(offsets_mm, "--offsets-mm")]
+    angles = None if angles_deg is None else [math.radians(value) for value in numbers(angles_deg, "--angles-deg")]
+    wanted = read_job(job)
+
+    from zerorev.model.text import json_text
+    from zerorev.report import offset as shown
+    from zerorev.tool_offset import least_offset, offset_curve
+
+    strokes = len(wanted.holes) * len(offsets) * len(angles or [0])
+    with terminal.progress("deepest strokes", strokes) as progress:
+        curve = offset_curve(wanted.robot, wanted.tool, wanted.holes, wanted.settings, offsets, angles, progress)
+    with terminal.busy("closing in on the least offset"):
+        least = least_offset(wanted, curve)
+    data = shown.offset_data(wanted, curve, least)
+    if output is not None:
+        write_text(output, json_text(data))
+    if figure is not None:
+        from zerorev.report.figures.offset import tool_offset
+        from zerorev.report.figures.style import png
+
+        write_bytes(figure, png(tool_offset(wanted, curve, least)))
+    if json:
+        terminal.print_json(data)
+    else:
+        terminal.out().print(shown.offset_table(wanted, curve, least))
+        terminal.print_lines(shown.offset_lines(wanted, curve, least))
+        for what, path in (("answer", output), ("figure", figure)):
+            if path is not None:
+                terminal.say(f"{what} written to {path}")
+    return FOUND if least is None else FINE

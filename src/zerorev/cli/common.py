@@ -1,0 +1,85 @@
+"""What the commands share: the app that they join, their exit codes, and looks at their arguments."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, Parameter
+
+from zerorev.errors import InputError, OutputError
+
+__all__ = [
+    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "app", "need", "not_over", "numbers",
+]  # fmt: skip
+
+FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
+MOST_NUMBERS = 10_000  # of one range on the command line
+
+ENDING = """
+Exit codes:
+
+- 0: all is well.
+- 1: there is an answer, but something in it is wrong: a hole without a motion, a finding of level error, a failed
+  check, a plan that must not become a program.
+- 2: an argument, an input or an output that cannot be used.
+- 70: a fault in zerorev itself.
+- 130: interrupted.
+
+No file is ever left half-written.
+"""
+
+
+def _version() -> str:
+    from importlib.metadata import version
+
+    return version("zerorev")
+
+
+app = App(
+    name="zerorev",
+    help="Robotic drilling without joint reversals: plan the spin of the tool, prove it, write the robot program.",
+    help_epilogue=ENDING,
+    version=_version,
+    default_parameter=Parameter(negative=(), show_default=False),
+    help_format="markdown",
+    suppress_keyboard_interrupt=False,
+    result_action="return_value",
+)
+
+Output = Annotated[Path | None, Parameter(name=["--output", "-o"])]
+
+
+def not_over(output: Path, source: Path) -> None:
+    """Refuse to write over the file that is read."""
+    if output.exists() and source.exists() and output.samefile(source):
+        raise OutputError(str(output), "it is the file that is read")
+
+
+def numbers(text: str, where: str) -> list[float]:
+    """Numbers of START:STOP:STEP, the stop among them where a step meets it, or of a list with commas."""
+    accepted = "START:STOP:STEP with a step above 0, or numbers with commas between them"
+    parts = text.split(":")
+    try:
+        numbers = [float(part) for part in (parts if len(parts) == 3 else text.split(","))]
+    except ValueError:
+        raise InputError(f"'{text}' is not numbers", where=where, accepted=accepted) from None
+    if not all(map(math.isfinite, numbers)):
+        raise InputError(f"'{text}' is not finite", where=where, accepted=accepted)
+    if len(parts) != 3:
+        return numbers
+    start, stop, step = numbers
+    if step <= 0 or stop < start or (stop - start) / step > MOST_NUMBERS:
+        raise InputError(f"'{text}' is no range", where=where, accepted=f"{accepted}, {MOST_NUMBERS} steps at most")
+    return [start + n * step for n in range(int((stop - start) / step + 1e-9) + 1)]
+
+
+def need(module: str, package: str, option: str, extra: str) -> None:
+    """Refuse what needs a package that is not installed, and say which extra brings it."""
+    from importlib.util import find_spec
+
+    if find_spec(module) is None:
+        raise InputError(
+            f"needs {package}, which is not installed", where=option, accepted=f"pip install 'zerorev[{extra}]'"
+        )

@@ -1,0 +1,94 @@
+"""`zerorev compare`: search methods against each other."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from zerorev.cli.common import FINE, Output, app, need, not_over
+from zerorev.errors import InputError
+from zerorev.report import terminal
+
+__all__ = ["compare"]
+
+USUAL = "exact,swarm,differential_evolution,dual_annealing,direct"
+
+
+@app.command
+def compare(
+    job: Path,
+    /,
+    *,
+    methods: str = USUAL,
+    seeds: int = 20,
+    hole: str | None = None,
+    budget: int | None = None,
+    output: Output = None,
+    figure: Path | None = None,
+    json: bool = False,
+) -> int:
+    """Compare search methods: how often they find zero reversals, how good what they find is, and how long they take.
+
+    All of them look for the least of the thesis' objective (eq. 4.7, no motion threshold), with as many evaluations
+    each; what they find is evaluated exactly. After Ctrl-C what is finished is shown.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        methods: Names with commas between them: exact, swarm, swarm_trial_1 to swarm_trial_8, differential_evolution,
+            direct, dual_annealing, pymoo_pso, pymoo_ga, pymoo_de, cma; by default exact, swarm and those of SciPy.
+        seeds: How many runs of each method, with the seeds 0, 1, 2, ...; a method without chance runs once.
+        hole: The id of the only hole to compare at.
+        budget: Evaluations a run at most; by default 5,100, the thesis'.
+        output: Where to write the answer: JSON, or a row a run where it ends in .csv.
+        figure: Picture to draw (PNG): box plots.
+        json: Print the answer as JSON on standard output, and nothing else there.
+    """
+    from zerorev.model.files import read_job
+    from zerorev.model.output import check_file, write_bytes, write_text
+
+    for path in (output, figure):
+        if path is not None:
+            check_file(path)
+            not_over(path, job)
+    if figure is not None:
+        need("matplotlib", "matplotlib", "--figure", "figures")
+    if seeds < 1:
+        raise InputError(f"{seeds} seeds", where="--seeds", accepted="1 or more")
+    wanted = read_job(job)
+
+    from zerorev.compare import comparison, runs
+    from zerorev.model.text import json_text
+    from zerorev.report import comparison as shown
+    from zerorev.search.methods import BUDGET
+
+    names = [name.strip() for name in methods.split(",") if name.strip()]
+    asked = comparison(wanted, names, range(seeds), budget=BUDGET if budget is None else budget, hole=hole)
+    found, interrupted = [], False
+    try:
+        with terminal.progress("comparing", asked.expected, each="run") as progress:
+            for run in runs(asked):
+                found.append(run)
+                if progress:
+                    progress(len(found), asked.expected)
+    except KeyboardInterrupt:
+        interrupted = True
+    answer = replace(asked, runs=tuple(found))
+    data = shown.comparison_data(answer)
+    if json:
+        terminal.print_json(data)
+    elif found:
+        terminal.out().print(shown.comparison_table(answer))
+        terminal.print_lines(shown.comparison_lines(answer))
+    if interrupted:
+        raise KeyboardInterrupt(f"interrupted after {len(found)} of {asked.expected} runs; no file was written")
+    if output is not None:
+        write_text(output, shown.comparison_csv(answer) if output.suffix.lower() == ".csv" else json_text(data))
+    if figure is not None:
+        from zerorev.report.figures.comparison import comparison_boxes
+        from zerorev.report.figures.style import png
+
+        write_bytes(figure, png(comparison_boxes(answer)))
+    for what, path in (("answer", output), ("figure", figure)):
+        if path is not None and not json:
+            terminal.say(f"{what} written to {path}")
+    return FINE

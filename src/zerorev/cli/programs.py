@@ -1,0 +1,122 @@
+"""`zerorev check` and `zerorev export`: from a plan, by way of its proof, to a robot program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zerorev.cli.common import FINE, FOUND, Output, app, need, not_over
+from zerorev.errors import InputError
+from zerorev.report import terminal
+
+if TYPE_CHECKING:
+    from zerorev.model.plan import Plan
+
+__all__ = ["check", "export"]
+
+
+@app.command
+def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, json: bool = False) -> int:
+    """Check a plan anew, from the robot, the tool and the holes that it states.
+
+    Args:
+        plan: The plan file (JSON).
+        certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
+            file; what is refuted or cannot be decided is said.
+        program: With --certify: prove this program (.src), exported from the plan, instead: the rounded numbers that
+            stand in it, lead-in and all. The plan file is left as it is.
+        json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
+            of each hole of the program.
+    """
+    from zerorev.model.files import plan_to_json, read_plan, write_plan
+    from zerorev.model.output import check_file
+
+    if program is not None and not certify:
+        raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
+    if certify:
+        need("flint", "python-flint", "--certify", "certify")
+    if certify and program is None:
+        check_file(plan)
+    answer = read_plan(plan)
+    if program is not None:
+        from zerorev.program.read_back import holes_of, read_program
+
+        written = read_program(program)
+        drilled = holes_of(written, answer)
+
+    from zerorev.verify import verify_plan
+
+    with terminal.busy("checking"):
+        answer = verify_plan(answer)
+    if program is not None:
+        from zerorev.verify.certificate_program import certify_program
+
+        with terminal.busy("proving"):
+            answer = certify_program(answer, written, drilled)
+    elif certify:
+        from zerorev.verify.certificate import certify_plan
+
+        with terminal.busy("proving"):
+            answer = certify_plan(answer)
+        write_plan(answer, plan)
+    if json and program is not None:
+        terminal.print_json(_proofs(plan_to_json(answer), written.name))
+    elif json:
+        terminal.print_json(plan_to_json(answer))
+    else:
+        _show_plan(answer)
+        if program is not None:
+            terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
+        elif certify:
+            terminal.say(f"check and certificates written into {plan}")
+    return _verdict(answer, certify=certify)
+
+
+@app.command
+def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
+    """Write a plan as a robot program, after a last look at its speeds, turns and poses.
+
+    Args:
+        plan: The plan file (JSON).
+        controller: The robot's controller: krl (KUKA).
+        output: The program's file; by default beside the plan, called as the plan is.
+        skip_failed: Leave out the holes that must not be exported instead of refusing them all.
+    """
+    from zerorev.model.files import read_plan
+    from zerorev.model.output import check_file, write_text
+
+    if output is not None:
+        check_file(output)
+        not_over(output, plan)
+    answer = read_plan(plan)
+
+    from zerorev.program.export import export as to_program
+    from zerorev.report import tables
+
+    program = to_program(answer, controller, skip_failed=skip_failed, name=output.stem if output else None)
+    target = output or plan.with_name(program.name + program.suffix)
+    write_text(target, program.text)
+    terminal.print_lines(tables.finding_lines(program.findings))
+    terminal.say(f"program {program.name} written to {target}")
+    if target.name != program.name + program.suffix:
+        terminal.note(f"the controller wants this file called {program.name}{program.suffix}")
+    return FINE
+
+
+def _verdict(answer: Plan, *, certify: bool = False) -> int:
+    from zerorev.report.answer import Shown
+
+    shown = Shown(answer, answer.holes)
+    return FINE if shown.sound and (shown.certified or not certify) else FOUND
+
+
+def _proofs(plan: dict[str, Any], program: str) -> dict[str, Any]:
+    """What is proven of a program's holes, without the plan around it: in a plan file it would pass for the plan's."""
+    holes = [{key: hole[key] for key in ("id", "verified", "certificate")} for hole in plan["holes"]]
+    return {"format": "zerorev.program_certificate/1", "program": program, "holes": holes}
+
+
+def _show_plan(answer: Plan) -> None:
+    from zerorev.report.answer import Shown
+
+    Shown(answer, answer.holes).show()
