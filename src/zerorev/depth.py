@@ -1,9 +1,9 @@
 """The deepest stroke of a hole that has no reversal, over all branches (theory §4).
 
 A leg that keeps its directions to some depth keeps them to any lesser one, so the greatest margin that a pair of legs
-can have falls as the stroke grows. The deepest stroke is where it falls to the motion threshold: a root in one unknown.
-A coarse look at growing depths tells which spins at the target are in question; in each valley that is left the root is
-located, and the deepest is taken.
+can have falls as the stroke grows. A coarse look at growing depths tells which spins at the target are in question;
+from each of those left the two legs are bettered, the depth being one of their unknowns, to where nothing more is to be
+had, and the deepest is taken.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from zerorev.evaluation import evaluate
 from zerorev.kernels import legs, pairs
+from zerorev.kernels.arm import twist_field
 from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -22,9 +23,10 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.exact import COARSE_NODES, FINE_NODES, GRID, LIMIT_SLACK, NODES, Asked
+from zerorev.search.exact import GRID, LIMIT_SLACK, Asked
 from zerorev.search.free import deepest_free
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, straight_motion, target_spins
+from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of
+from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
 
 __all__ = ["Deepest", "deepest_stroke"]
 
@@ -32,20 +34,13 @@ FIRST_LOOK = 0.06  # of the stretched arm's length: about what a middling hole a
 STEP = 1.5  # from one depth of the coarse look to the next
 MOST_LOOKS = 16
 SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
-VALLEYS = 8  # looked into, at most
-FORESIGHT = 1.15  # a root may lie so much deeper than a first secant has it
-FIRST_STEP = 1.15  # of the root search
-ROOT_STEPS = 24
-WINDOW_STEPS, MOST_WINDOWS = 10, 4  # of the golden section over the spin; how often its window is moved on
-FINE_WINDOW = 0.005  # of a step of the grid
-PRECISION = 2e-5  # of the depth
-KEPT_BACK = (
-    1e-5,
-    4e-5,
-    1e-4,
-    1e-3,
-    1e-2,
-)  # of the depth: at the deepest a joint stops, so the plan ends a little before
+LOOKS = 9  # points of a leg
+ENOUGH = 1e-7  # relative: less is no gain
+ENOUGH_LACK = 1e-6  # [rad/m]
+SPARE = 1e-3 * LEAST_RATE  # kept to the threshold, for rounding
+# points of a leg, and the share of the depth kept back: at the deepest a joint stops, so a plan ends a little before,
+# and where rates change steeply next to the end of the reach it takes many points to see that it does
+CLOSER = ((65, 1e-5), (257, 1e-5), (257, 1e-4), (257, 1e-3), (257, 3e-3), (257, 6e-3), (257, 1e-2))
 
 
 @dataclass(frozen=True)
@@ -83,15 +78,35 @@ def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | No
 
 
 @dataclass(frozen=True)
-class _Valley:
-    """A spin at the target around which the margin is greatest."""
+class _Start:
+    """Two legs from which to go deeper.
+
+    Attributes:
+        posture: 0..3.
+        legs: the two.
+    """
 
     posture: int
-    psi_t: float
+    legs: Legs
+
+
+@dataclass(frozen=True)
+class _End:
+    """The deepest legs of a valley.
+
+    Attributes:
+        legs: the two.
+        branch: 0..7.
+        sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,).
+    """
+
+    legs: Legs
+    branch: int
+    sense: Array
 
 
 class _Search:
-    """One hole, and the greatest margin of its pairs of legs as the stroke grows."""
+    """One hole, and its deepest pairs of straight legs."""
 
     def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
         self.robot, self.tool, self.hole = robot, tool, hole
@@ -101,49 +116,49 @@ class _Search:
         self.min_rate = max(settings.min_rate, LEAST_RATE)
         self.psi_bound = settings.psi_bound
         self.psi = target_spins(settings.psi_bound, GRID)
-        self.step = float(self.psi[1] - self.psi[0])
+        limits = robot.limits
+        self.rules = Rules(
+            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, self.min_rate, psi_bound=settings.psi_bound or 0.0
+        )
+        self.unlimited = self.rules._replace(lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
 
     def run(self) -> Deepest:
-        """Look coarsely at growing depths, then locate the root in each valley that may beat the best so far."""
-        alive, depth = self._survivors()
-        while depth > SHALLOWEST * self.stretched:
-            found = self._deepest_of(self._valleys(depth, self._around(alive)), depth)
-            if found is not None:
-                return self._settled(*found)
-            # the coarse look told too much: from a lesser depth, then
-            depth /= STEP
-            alive = self._look(depth, self._every_other()) > self.min_rate
+        """Look coarsely at growing depths, then go from the deepest that seem possible to the end of each valley."""
+        ends: list[_End] = []
+        for depth, found in reversed(self._looks()):
+            for start in self._starts(depth, found):
+                ends += self._deepened(start, max((end.legs.depth for end in ends), default=0.0))
+            if any(end.legs.depth >= depth for end in ends):
+                break  # what a coarse look does not think so deep is left out
+        for end in sorted(ends, key=lambda end: -end.legs.depth):
+            settled = self._settled(end)
+            if settled is not None:
+                return settled
         return Deepest(0.0)
-
-    def _deepest_of(self, valleys: list[_Valley], start: float) -> tuple[float, Array] | None:
-        best: tuple[float, Array] | None = None
-        for valley in valleys[:VALLEYS]:
-            found = self._root(valley, start, 0.0 if best is None else best[0])
-            if found is not None and (best is None or found[0] > best[0]):
-                best = found
-        return best
 
     def asked(self, depth: float) -> Asked:
         """What legs of a depth are held to."""
-        limits = self.robot.limits
         return Asked(
-            depth, self.min_rate, False, False, limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK,
-            LONGEST_TWIST / depth, self.psi_bound or 0.0,
+            depth, self.min_rate, False, False, self.rules.lower, self.rules.upper, LONGEST_TWIST / depth,
+            self.rules.psi_bound,
         )  # fmt: skip
 
-    def _survivors(self) -> tuple[npt.NDArray[np.bool_], float]:
-        """Where some pair may do at a depth, shape (4, K), of which coarse looks show none at half as much again."""
-        depth, looks = FIRST_LOOK * self.stretched, MOST_LOOKS
-        margin = self._look(depth, self._every_other())
-        while not (margin > self.min_rate).any() and depth > SHALLOWEST * self.stretched:
-            depth, looks = depth / STEP**2, 2  # more is known to lack
-            margin = self._look(depth, self._every_other())
-        for _ in range(looks):
-            deeper = self._look(depth * STEP, self._around(margin > self.min_rate))
-            if not (deeper > self.min_rate).any():
-                break
-            margin, depth = deeper, depth * STEP
-        return margin > self.min_rate, depth
+    def _looks(self) -> list[tuple[float, Array]]:
+        """Depths at which some pair may do, least first, and what coarse looks found there, shape (4, K, LOOKED)."""
+        depth = FIRST_LOOK * self.stretched
+        found = self._look(depth, self._every_other())
+        while not self._alive(found).any() and depth > SHALLOWEST * self.stretched:
+            depth /= STEP
+            found = self._look(depth, self._every_other())
+        looks: list[tuple[float, Array]] = []
+        while self._alive(found).any() and len(looks) < MOST_LOOKS:
+            looks.append((depth, found))
+            depth *= STEP
+            found = self._look(depth, self._around(self._alive(found)))
+        return looks
+
+    def _alive(self, found: Array) -> npt.NDArray[np.bool_]:
+        return np.asarray(found[..., pairs.MARGIN_LOOKED] > self.min_rate)
 
     def _every_other(self) -> npt.NDArray[np.bool_]:
         """Every other line of the grid, shape (8, K): enough as long as much is alive."""
@@ -158,105 +173,74 @@ class _Search:
         return np.asarray(self.branches[:, None] & np.repeat(alive, 2, axis=0))
 
     def _look(self, depth: float, lines: npt.NDArray[np.bool_]) -> Array:
-        """What the margin of a pair is at most, at every spin of the grid, shape (4, K)."""
-        out = np.empty((4, self.psi.size, 3))
+        out = np.empty((4, self.psi.size, pairs.LOOKED))
         pairs.look(
             self.robot.arm, self.plane, self.psi, lines, np.ones(6, dtype=bool), self.asked(depth), legs.TRAVEL, out
         )
-        return out[..., 1]
+        return out
 
-    def _valleys(self, depth: float, lines: npt.NDArray[np.bool_]) -> list[_Valley]:
-        """Local maxima of the greatest margin over the spins of the grid, highest first."""
-        out = np.empty((4, self.psi.size, pairs.COLUMNS))
-        asked = self.asked(depth)
-        pairs.best_pairs(
-            self.robot.arm, self.plane, self.psi, lines, np.ones(6, dtype=bool), asked, asked.unlimited(),
-            legs.GREATEST_MARGIN, COARSE_NODES, out,
-        )  # fmt: skip
-        margin = out[..., pairs.MARGIN]
-        left, right = np.roll(margin, 1, axis=1), np.roll(margin, -1, axis=1)
-        if self.psi_bound is not None:
-            left[:, 0] = right[:, -1] = -np.inf
-        peaks = np.argwhere((margin > -np.inf) & (margin >= left) & (margin > right)).tolist()
-        peaks.sort(key=lambda peak: (-margin[*peak], peak))
-        return [_Valley(p, float(self.psi[n])) for p, n in peaks]
-
-    def _root(self, valley: _Valley, start: float, beaten: float) -> tuple[float, Array] | None:
-        """The depth at which the valley's greatest margin falls to the threshold, and its pair.
-
-        None where it has none at the start, or where it plainly falls short of a depth that is had elsewhere.
-        """
-        best = self._top(start, valley.posture, valley.psi_t, self.step)
-        if not np.isfinite(best[pairs.VALUE]):
-            return None
-        good, f_good = start, best[pairs.MARGIN] - self.min_rate
-        bad, f_bad = np.inf, -np.inf
-        depth, around = good * FIRST_STEP, self.step
-        for step in range(ROOT_STEPS):
-            pair = self._top(depth, valley.posture, float(best[pairs.SPIN]), around)
-            if around < self.step and not np.isfinite(pair[pairs.VALUE]):
-                pair = self._top(depth, valley.posture, float(best[pairs.SPIN]), self.step)
-            f = pair[pairs.MARGIN] - self.min_rate
-            # the spin moves the less, the nearer the root
-            around = min(max(4 * abs(pair[pairs.SPIN] - best[pairs.SPIN]), 0.05 * self.step), self.step)
-            if step == 0 and f < f_good:
-                foreseen = start + (depth - start) * f_good / (f_good - f)
-                if foreseen * FORESIGHT < beaten:
-                    return None
-            # Anderson and Bjoerck: the end that stays is weighed down, so that it will not stay for ever
-            if np.isfinite(pair[pairs.VALUE]):
-                f_bad *= 1 - f / f_good if 0 < f < f_good else 0.5
-                good, f_good, best = depth, f, pair
-            else:
-                f_good *= 1 - f / f_bad if f_bad < f < 0 else 0.5
-                bad, f_bad = depth, f
-            close = PRECISION * good
-            if bad - good < close:
-                break
-            if bad == np.inf:
-                depth = good * FIRST_STEP
-            else:
-                share = f_good / (f_good - f_bad) if np.isfinite(f_bad) else 0.5
-                depth = min(max(good + share * (bad - good), good + 0.4 * close), bad - 0.4 * close)
-        return good, best
-
-    def _top(
-        self,
-        depth: float,
-        posture: int,
-        psi_t: float,
-        around: float,
-        *,
-        nodes: int = NODES,
-    ) -> Array:
-        """The pair of greatest margin around a spin, as `kernels.pairs` writes it."""
-        asked, row = self.asked(depth), np.empty(pairs.COLUMNS)
-        low, high = psi_t - around, psi_t + around
-        for _ in range(MOST_WINDOWS):
+    def _starts(self, depth: float, found: Array) -> list[_Start]:
+        """Pairs at the local maxima of what the margin may be, over the spins of the grid, highest first."""
+        margin = np.where(self._alive(found), found[..., pairs.MARGIN_LOOKED], -np.inf)
+        peaks = margin > -np.inf
+        for away in (1, 2):  # two, where every other line was left out
+            left, right = np.roll(margin, away, axis=1), np.roll(margin, -away, axis=1)
             if self.psi_bound is not None:
-                low, high = max(low, -self.psi_bound), min(high, self.psi_bound)
-            pairs.descend(
-                self.robot.arm, self.plane, posture, low, high, np.ones(6, dtype=bool), asked, asked.unlimited(),
-                self.branches, legs.GREATEST_MARGIN, nodes, WINDOW_STEPS, np.inf, True, row,
-            )  # fmt: skip
-            spin, edge = float(row[pairs.SPIN]), 0.03 * (high - low)
-            if low + edge < spin < high - edge or row[pairs.MARGIN] == -np.inf:
-                break
-            low, high = spin - around, spin + around
-        return row
+                left[:, :away] = right[:, -away:] = -np.inf
+            peaks &= (margin >= left) & (margin > right)
+        starts = []
+        for posture, n in sorted(np.argwhere(peaks).tolist(), key=lambda peak: (-margin[*peak], peak)):
+            psi = self.psi[n] + depth * np.append(0.0, found[posture, n, pairs.SLOPES_LOOKED :])
+            starts.append(_Start(posture, Legs(np.array([[0.0, depth]] * 2), psi[[[0, 1], [0, 2]]])))
+        return starts
 
-    def _settled(self, depth: float, pair: Array) -> Deepest:
-        """The deepest stroke whose motion, followed closely, has no reversal."""
-        posture, psi_t = int(pair[pairs.BRANCH]) // 2, float(pair[pairs.SPIN])
-        for kept_back in KEPT_BACK:
-            stroke = depth * (1 - kept_back)
-            row = self._top(stroke, posture, psi_t, FINE_WINDOW * self.step, nodes=FINE_NODES)
-            if not np.isfinite(row[pairs.VALUE]):
-                continue
-            branch = int(row[pairs.BRANCH])
-            slopes = float(row[pairs.SLOPE_ABOVE]), float(row[pairs.SLOPE_BELOW])
-            profile = straight_motion(stroke, float(row[pairs.SPIN]), slopes, periodic=self.psi_bound is None)
-            score = evaluate(self.robot, self.tool, replace(self.hole, depth=stroke), profile, branch).score
-            if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate * (1 - 1e-6):
-                return Deepest(stroke, profile, branch)
-        return Deepest(0.0)
+    def _deepened(self, start: _Start, beaten: float) -> list[_End]:
+        """The deepest legs from a start on the branches of its posture; none where they are no deeper than `beaten`."""
+        sense = self._sense(start)
+        if sense is None:
+            return []
+        # limits seldom bind: what is deepest without them is often within them, and nothing is deeper
+        deepest, _ = self._go(2 * start.posture, sense, self.unlimited, start.legs, "depth", LOOKS, weighed=True)
+        ends = []
+        if deepest.depth > beaten:
+            for branch in (2 * start.posture, 2 * start.posture + 1):
+                if not self.branches[branch]:
+                    continue
+                _, lack = self._go(branch, sense, self.rules, deepest, "depth", LOOKS, steps=0, weighed=True)
+                legs = deepest
+                if lack > ENOUGH_LACK:
+                    legs, lack = self._go(branch, sense, self.rules, start.legs, "depth", LOOKS, weighed=True)
+                if lack <= ENOUGH_LACK:
+                    ends.append(_End(legs, branch, sense))
+        return ends
+
+    def _sense(self, start: _Start) -> Array | None:
+        cs, theta_s, theta_psi = np.empty((6, 2)), np.empty(6), np.empty(6)
+        psi_t = float(start.legs.psi[0, 0])
+        if not twist_field(self.robot.arm, self.plane, 0.0, psi_t, start.posture, cs, theta_s, theta_psi):
+            return None
+        return np.where(theta_psi > 0, 1.0, -1.0)
+
+    def _go(
+        self, branch: int, sense: Array, rules: Rules, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
+        weighed: bool = False,
+    ) -> tuple[Legs, float]:  # fmt: skip
+        return bettered(
+            self.robot.arm, self.plane, branch, sense, rules, legs, goal,
+            looks=looks, steps=steps, enough=ENOUGH, weighed=weighed,
+        )  # fmt: skip
+
+    def _settled(self, end: _End) -> Deepest | None:
+        """The deepest stroke of a valley whose motion, followed closely, has no reversal."""
+        rules = self.rules._replace(min_rate=self.min_rate + SPARE)
+        for looks, kept_back in CLOSER:
+            deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", looks, weighed=True)
+            share = 1 - kept_back
+            room = Legs(deepest.standoff * share, deepest.psi[:, :1] + share * (deepest.psi - deepest.psi[:, :1]))
+            room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
+            profile = motion_of(room, periodic=self.psi_bound is None)
+            hole = replace(self.hole, depth=room.depth)
+            score = evaluate(self.robot, self.tool, hole, profile, end.branch).score
+            if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
+                return Deepest(room.depth, profile, end.branch)
+        return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
@@ -128,54 +129,56 @@ def _turning_points(
     again, closely, so that a joint that turns round and back between two samples is not missed; a change of sign is
     then located by bisection.
     """
-    direction = np.zeros(6)  # the last direction in which each joint moved
-    slowest = np.full(6, np.inf)
+    along = np.where(np.arange(profile.twist_rate.size) < profile.corner, -1.0, 1.0)
+
+    def rates(k: npt.NDArray[np.int64], x: Array) -> Array:
+        """Rates along the motion at fractions x of segments k."""
+        standoff = profile.standoff[k] + x * (profile.standoff[k + 1] - profile.standoff[k])
+        psi = profile.psi[k] + x * (profile.psi[k + 1] - profile.psi[k])
+        return along[k, None] * outward_rates(robot, tool, hole, branch, standoff, psi, profile.twist_rate[k])
+
+    k = np.repeat(np.arange(along.size), SAMPLES_PER_SEGMENT)
+    x = np.tile(np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT), along.size)
+    for _ in range(CLOSER_LOOKS):
+        k, x = _with_closer_looks(k, x, np.abs(rates(k, x)))
+    r = rates(k, x)
     events: list[tuple[float, Event]] = []
-    for k, slope in enumerate(profile.twist_rate):
-        inwards = k < profile.corner
-        leg: LegName = "plunge" if inwards else "retract"
-        start, end = profile.standoff[k : k + 2]
-
-        def rates(x: Array, k: int = k, slope: float = slope, sense: float = -1.0 if inwards else 1.0) -> Array:
-            """Rates along the motion at fractions x of the segment."""
-            standoff = profile.standoff[k] + x * (profile.standoff[k + 1] - profile.standoff[k])
-            psi = profile.psi[k] + x * (profile.psi[k + 1] - profile.psi[k])
-            return sense * outward_rates(robot, tool, hole, branch, standoff, psi, slope)
-
-        x = np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT)
-        for _ in range(CLOSER_LOOKS):
-            x = _with_closer_looks(x, np.abs(rates(x)))
-        r = rates(x)
-        slowest = np.fmin(slowest, np.fmin.reduce(np.abs(r), axis=0))
-        for i in range(6):
-            # NaN, a path that touches a singularity, tells no direction either
-            signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
-            moving = np.flatnonzero(signs)
-            if not moving.size:
-                continue
-            before = np.concatenate([direction[i : i + 1], signs[moving[:-1]]])
-            for turned in np.flatnonzero(before * signs[moving] < 0).tolist():
-                n = int(moving[turned])
-                # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
-                last = moving[turned - 1] if turned else 0
-                place = 0.0 if n == 0 else _root(lambda y, i=i: rates(y)[:, i], x[last], x[n])
-                standoff = float(start + place * (end - start))
-                where: LegName = "target" if n == 0 and k == profile.corner else leg
-                events.append((k + place, Event(i + 1, where, standoff)))
-            direction[i] = signs[moving[-1]]
+    for i in range(6):
+        # NaN, a path that touches a singularity, tells no direction either
+        signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
+        moving = np.flatnonzero(signs)
+        for turned in np.flatnonzero(signs[moving[:-1]] * signs[moving[1:]] < 0).tolist():
+            last, n = int(moving[turned]), int(moving[turned + 1])
+            segment = int(k[n])
+            # a segment's first sample turns at the breakpoint itself, any other since the joint last moved
+            at_first = n == 0 or k[n - 1] != segment
+            low = x[last] if k[last] == segment else 0.0
+            place = 0.0 if at_first else _root(lambda y, i=i, on=k[n : n + 1]: rates(on, y)[:, i], low, x[n])
+            start, end = profile.standoff[segment : segment + 2]
+            leg: LegName = "plunge" if segment < profile.corner else "retract"
+            where: LegName = "target" if at_first and segment == profile.corner else leg
+            events.append((segment + place, Event(i + 1, where, float(start + place * (end - start)))))
     events.sort(key=lambda entry: (entry[0], entry[1].joint))
-    return tuple(event for _, event in events), slowest
+    return tuple(event for _, event in events), np.fmin(np.inf, np.fmin.reduce(np.abs(r), axis=0))
 
 
-def _with_closer_looks(x: Array, speed: Array) -> Array:
+def _with_closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt.NDArray[np.int64], Array]:
+    """Samples x of segments k, shapes (N,), and more of them around those at which a joint is slowest."""
     before, after = np.full((2, *speed.shape), np.inf)
-    before[1:], after[:-1] = speed[:-1], speed[1:]
+    joined = np.flatnonzero(k[1:] == k[:-1])
+    before[joined + 1], after[joined] = speed[joined], speed[joined + 1]
     # neither a joint that stands still nor one of constant speed dips, whatever their last digits do
     rise = np.fmax(before, after) - speed
     dips = (speed <= before) & (speed <= after) & (speed > NIL_RATE) & (rise > 1e-6 * speed)
-    found, last = np.flatnonzero(dips.any(axis=1)).tolist(), len(x) - 1
-    looks = (np.linspace(x[max(n - 1, 0)], x[min(n + 1, last)], CLOSER_LOOK) for n in found)
-    return np.unique(np.concatenate([x, *looks]))
+    found = np.flatnonzero(dips.any(axis=1))
+    low, high = np.maximum(found - 1, 0), np.minimum(found + 1, x.size - 1)
+    low, high = np.where(k[low] == k[found], low, found), np.where(k[high] == k[found], high, found)
+    looks = np.linspace(x[low], x[high], CLOSER_LOOK)
+    k, x = np.concatenate([k, np.tile(k[found], CLOSER_LOOK)]), np.concatenate([x, looks.ravel()])
+    order = np.lexsort((x, k))
+    k, x = k[order], x[order]
+    new = np.append(True, (np.diff(k) > 0) | (np.diff(x) > 0))
+    return k[new], x[new]
 
 
 def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-def]

@@ -170,9 +170,9 @@ def joint_path(
 
 
 def outward_rates(
-    robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array, twist_rate: float
+    robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array, twist_rate: float | Array
 ) -> Array:
-    """D theta / d s along a leg of slope u [rad/m] at points (N,), read outwards [rad/m], shape (N, 6) (theory §2)."""
+    """D theta / d s at points (N,) of legs of slope u [rad/m], read outwards [rad/m], shape (N, 6) (theory §2)."""
     theta_s, theta_psi = np.empty((2, 6, standoff.size))
     rates(
         robot.arm, twist_plane(robot, tool, hole), branch // 2, np.ascontiguousarray(standoff),

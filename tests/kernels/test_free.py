@@ -129,23 +129,24 @@ def test_less_is_reached_with_less_twist_more_threshold_or_bounded_spin(robot, t
 
 
 @pytest.mark.skipif(SLOW, reason="many rows")
-def test_the_derivatives_of_segments_are_those_of_differences(robot, tool):
+@pytest.mark.parametrize("unit", [0.0, 0.05])
+def test_the_derivatives_of_segments_are_those_of_differences(robot, tool, unit):
     plane = kinematics.twist_plane(robot, tool, hole_at((500, 300, 800)))
     standoff, psi, shares = np.array([0.0, 0.02, 0.05, 0.09]), np.array([0.35, 0.5, 0.7, 1.0]), np.linspace(0, 1, 5)
     side = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
 
     def look(s, p):
         out = np.empty((3, 5, 6, 5))
-        segments.linearise(robot.arm, plane, 2, side, s, p, shares, out)
+        segments.linearise(robot.arm, plane, 2, side, s, p, shares, np.deg2rad(5.0), unit, out)
         return out
 
     here = look(standoff, psi)
     assert np.isfinite(here).all()
     for n in range(1, 4):
         for column, nudge in enumerate((np.array([1e-6, 0.0]), np.array([0.0, 1e-6]))):
-            unit = np.eye(4)[n]
-            ahead = look(standoff + nudge[0] * unit, psi + nudge[1] * unit)[..., 0]
-            behind = look(standoff - nudge[0] * unit, psi - nudge[1] * unit)[..., 0]
+            axis = np.eye(4)[n]
+            ahead = look(standoff + nudge[0] * axis, psi + nudge[1] * axis)[..., 0]
+            behind = look(standoff - nudge[0] * axis, psi - nudge[1] * axis)[..., 0]
             numeric = (ahead - behind) / 2e-6
             np.testing.assert_allclose(here[n - 1, ..., 3 + column], numeric[n - 1], rtol=1e-4, atol=1e-3)
             if n < 3:

@@ -19,12 +19,12 @@ def wide(start, **how):
     return asked(start.robot, start.hole, **how)._replace(lower=np.full(6, -4.0), upper=np.full(6, 4.0))
 
 
-def best_pair(start, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=None, bound=np.inf, thorough=False):
+def best_pair(start, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=None, bound=np.inf):
     """Columns of `pairs`; of the start's own branch alone unless others are named."""
     out, work = np.empty(pairs.COLUMNS), np.empty(field.ROOM)
     branches = np.arange(8) == start.branch if branches is None else branches
     at = start.robot.arm, start.plane, start.branch // 2, start.psi_t
-    pairs.best_pair(*at, keep, wanted, wanted.unlimited(), branches, mode, NODES, bound, thorough, work, out)
+    pairs.best_pair(*at, keep, wanted, wanted.unlimited(), branches, mode, NODES, bound, work, out)
     return out
 
 
@@ -141,10 +141,10 @@ class TestBestPair:
 
 def look(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=EVERY_BRANCH):
     """Value, margin and guess at every spin, shapes (4, K)."""
-    out = np.empty((4, psi.size, 3))
+    out = np.empty((4, psi.size, pairs.LOOKED))
     lines = np.repeat(branches[:, None], psi.size, axis=1)
     pairs.look(robot.arm, plane, psi, lines, keep, wanted, mode, out)
-    return np.moveaxis(out, -1, 0)
+    return np.moveaxis(out[..., :3], -1, 0)
 
 
 class TestLook:
@@ -225,10 +225,10 @@ def least_of_greatest(start, wanted, within=False):
     return min(sides)
 
 
-def descend(start, low, high, wanted, *, mode=legs.TRAVEL, steps=40, patient=False, bound=np.inf):
+def descend(start, low, high, wanted, *, mode=legs.TRAVEL, steps=40, bound=np.inf):
     best, branches = np.empty(pairs.COLUMNS), np.arange(8) == start.branch
     at = start.robot.arm, start.plane, start.branch // 2, low, high
-    args = ALL_JOINTS, wanted, wanted.unlimited(), branches, mode, NODES, steps, bound, patient
+    args = ALL_JOINTS, wanted, wanted.unlimited(), branches, mode, NODES, steps, bound
     pairs.descend(*at, *args, best)
     return best
 
@@ -282,15 +282,6 @@ class TestDescend:
                 tried += 1
         assert tried >= 8
         assert found == tried
-
-    def test_patience_finds_the_greatest_margin_where_no_pair_will_do(self, robot, positions):
-        start = Start(robot, positions[0].hole, 4, np.deg2rad(-5.9), 0.0)
-        spins = start.psi_t + np.linspace(-0.1, 0.1, 81)
-        _, margins = scan(start, spins, wide(start), legs.GREATEST_MARGIN)
-        too_much = wide(start, min_rate=2 * margins.max())
-        best = descend(start, spins[0], spins[-1], too_much, mode=legs.GREATEST_MARGIN, patient=True)
-        assert best[pairs.VALUE] == np.inf
-        assert best[pairs.MARGIN] >= margins.max() * (1 - 1e-4)
 
     def test_a_bound_is_no_answer(self):
         """What is not better than what is known already may be wrong, but it is not better, either."""

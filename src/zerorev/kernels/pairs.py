@@ -33,6 +33,8 @@ from zerorev.kernels.legs import (
 # columns of what is returned
 VALUE, SLOPE_ABOVE, SLOPE_BELOW, MARGIN, BRANCH, SPIN = range(6)
 COLUMNS = 6
+LOOKED = 5  # of what a look returns
+MARGIN_LOOKED, SLOPES_LOOKED = 1, 3
 
 HOPELESS = 1e6  # what a pair that will not do is worth, at least: the more it lacks, the more
 
@@ -59,7 +61,7 @@ def take_turns(principal, asked, choice, at_target):  # type: ignore[no-untyped-
 
 
 @kernel
-def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, thorough, work, out):  # type: ignore[no-untyped-def]
+def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, work, out):  # type: ignore[no-untyped-def]
     """The best two legs out of one point of the target line, one on each side of the critical rates.
 
     Args:
@@ -74,8 +76,6 @@ def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
         bound: a value that is known to be had elsewhere: where limits aside none is better, they are not looked at.
-        thorough: whether to look within the limits, too, where no pair will do without: the margin is then that within
-            them, and as continuous along the target line as it is.
         work: room for `fields`.
         out: out, shape (COLUMNS,): value to be least (inf where no pair will do), slope above, slope below, the
             greatest margin that both legs can have (-inf where one cannot be run at all), branch, psi_t.
@@ -91,18 +91,17 @@ def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode
     _pair_within(arm, plane, 2 * posture, psi_t, held, unlimited, mode, nodes, work, out)
     if out[MARGIN] == -np.inf:
         return
-    if (out[VALUE] == np.inf and not thorough) or np.inf > out[VALUE] >= bound:
+    if out[VALUE] >= bound:
         # what lacks margin without limits lacks it within them, and what is no better is no better within them
         out[BRANCH] = 2.0 * posture if choices[0] else 2.0 * posture + 1.0
         return
-    if out[VALUE] < np.inf:
-        legs = np.empty((2, ROWS, 6))
-        trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_ABOVE], asked.depth, nodes, work, legs[0])
-        trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_BELOW], asked.depth, nodes, work, legs[1])
-        for flip in range(2):
-            if choices[flip] and turns_fit(legs[0], legs[1], flip == 1, principal[flip], asked):
-                out[BRANCH] = 2.0 * posture + flip
-                return
+    legs = np.empty((2, ROWS, 6))
+    trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_ABOVE], asked.depth, nodes, work, legs[0])
+    trace_leg(arm, plane, 2 * posture, psi_t, out[SLOPE_BELOW], asked.depth, nodes, work, legs[1])
+    for flip in range(2):
+        if choices[flip] and turns_fit(legs[0], legs[1], flip == 1, principal[flip], asked):
+            out[BRANCH] = 2.0 * posture + flip
+            return
     out[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi_t
     for flip in range(2):
         if flip == 1:
@@ -184,8 +183,8 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
         keep: whether a joint must keep its direction, shape (6,).
         asked: `Asked`.
         mode: PLUNGE_ROTATION, or TRAVEL.
-        out: out, shape (4, K, 3): about the least value of pairs that may do (inf: none), what the margin of a pair is
-            at most (-inf: none can be run), and about the value of the pair that has it.
+        out: out, shape (4, K, LOOKED): about the least value of pairs that may do (inf: none), what the margin of a
+            pair is at most (-inf: none can be run), about the value of the pair that has it, and its slopes.
     """
     work = np.empty(ROOM)
     kappa, sense, principal = np.empty(6), np.empty(6), np.empty((2, 6))
@@ -195,13 +194,13 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
     for posture in range(4):
         for n in range(psi.shape[0]):
             spin = out[posture, n]
-            spin[:] = np.inf, -np.inf, np.inf
+            spin[:] = np.inf, -np.inf, np.inf, np.nan, np.nan
             wanted = lines[:, n]
             if not (wanted[2 * posture] or wanted[2 * posture + 1]):
                 continue
             if not set_out(arm, plane, posture, psi[n], asked, wanted, kappa, sense, principal, choices):
                 continue
-            spin[:] = 0.0, np.inf, 0.0
+            spin[:3] = 0.0, np.inf, 0.0
             for k in range(2):
                 side = 1.0 - 2.0 * k
                 count = slope_candidates(kappa, keep, side, psi[n], asked, slopes)
@@ -217,7 +216,7 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
                 least, greatest, there = np.inf, -np.inf, np.inf
                 for j in range(count):
                     if ceiling[j] > greatest:
-                        greatest, there = ceiling[j], travel[j]
+                        greatest, there, spin[3 + k] = ceiling[j], travel[j], slopes[j]
                     if ceiling[j] < asked.min_rate:
                         continue
                     least = min(least, travel[j])
@@ -284,35 +283,7 @@ def set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal
 
 
 @kernel
-def best_pairs(arm, plane, psi, lines, keep, asked, unlimited, mode, nodes, out):  # type: ignore[no-untyped-def]
-    """`best_pair` at each spin of a grid.
-
-    Args:
-        arm: `ArmGeometry`.
-        plane: `TwistPlane`.
-        psi: spins at the target [rad], shape (K,).
-        lines: whether to look at a branch there, shape (8, K).
-        keep: whether a joint must keep its direction, shape (6,).
-        asked: `Asked`.
-        unlimited: the same without joint limits.
-        mode: see `best_pair`.
-        nodes: points on a leg.
-        out: out, shape (4, K, COLUMNS): see `best_pair`.
-    """
-    work = np.empty(ROOM)
-    for posture in range(4):
-        for n in range(psi.shape[0]):
-            pair = out[posture, n]
-            pair[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi[n]
-            wanted = lines[:, n]
-            if wanted[2 * posture] or wanted[2 * posture + 1]:
-                best_pair(
-                    arm, plane, posture, psi[n], keep, asked, unlimited, wanted, mode, nodes, np.inf, True, work, pair
-                )  # fmt: skip
-
-
-@kernel
-def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mode, nodes, steps, bound, patient, best):  # type: ignore[no-untyped-def]
+def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mode, nodes, steps, bound, best):  # type: ignore[no-untyped-def]
     """The bottom of a valley of the target line: golden section, first towards pairs that will do, then among them.
 
     Args:
@@ -329,18 +300,17 @@ def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mo
         nodes: points on a leg.
         steps: of the golden section, at most.
         bound: see `best_pair`.
-        patient: whether to go on where no pair will do, for the greatest margin that there is; thorough, too, then.
         best: out, shape (COLUMNS,): the best pair seen, see `best_pair`.
     """
     work, pair = np.empty(ROOM), np.empty(COLUMNS)
     best[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, 0.5 * (low + high)
     x, y = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    args = (keep, asked, unlimited, branches, mode, nodes, bound, patient)
+    args = (keep, asked, unlimited, branches, mode, nodes, bound)
     at_x = _worth(arm, plane, posture, x, args, work, pair, best)
     at_y = _worth(arm, plane, posture, y, args, work, pair, best)
     at_low, at_high = np.nan, np.nan
     for _ in range(steps):
-        if not patient and min(at_x, at_y) - most_gained(low, x, y, high, at_low, at_x, at_y, at_high) >= HOPELESS:
+        if min(at_x, at_y) - most_gained(low, x, y, high, at_low, at_x, at_y, at_high) >= HOPELESS:
             return  # too little can be gained: it will not get there
         if at_x <= at_y:
             high, at_high = y, at_y
@@ -357,8 +327,8 @@ def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mo
 @kernel
 def _worth(arm, plane, posture, psi_t, args, work, pair, best):  # type: ignore[no-untyped-def]
     """The value of the best pair at a spin, or HOPELESS and what it lacks; `best` is bettered where it is better."""
-    keep, asked, unlimited, branches, mode, nodes, bound, thorough = args
-    best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, thorough, work, pair)
+    keep, asked, unlimited, branches, mode, nodes, bound = args
+    best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode, nodes, bound, work, pair)
     if pair[VALUE] < best[VALUE] or (best[VALUE] == np.inf and pair[MARGIN] > best[MARGIN]):
         best[:] = pair
     if pair[VALUE] < np.inf:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
-from zerorev.kernels.field import BLOCK, PSI, STANDOFF, fields, rates
+from zerorev.kernels.field import BLOCK, PSI, STANDOFF, fields, rates, spun
 from zerorev.kernels.tube import HIGH, KEPT, LEFT, LOW, RIGHT, admissible, drift
 
 ROUNDING = 1e-5  # [rad] by which the way in may miss the way out
@@ -100,8 +100,11 @@ def place_knots(tube, rows, viable, knots):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def linearise(arm, plane, posture, side, standoff, psi, shares, out):  # type: ignore[no-untyped-def]
-    """The joints' rates on a leg of straight segments, and how they change with its breakpoints.
+def linearise(arm, plane, posture, side, standoff, psi, shares, min_rate, unit, out):  # type: ignore[no-untyped-def]
+    """What the joints' rates on a leg of straight segments have to spare, and how it changes with the breakpoints.
+
+    Next to a singularity rates change without bound and over no distance at all. Where only their signs matter much,
+    they are better weighed by one over 1 + the square of all fields, which leaves smooth functions there.
 
     Args:
         arm: `ArmGeometry`.
@@ -111,12 +114,14 @@ def linearise(arm, plane, posture, side, standoff, psi, shares, out):  # type: i
         standoff: of the breakpoints [m], shape (K + 1,).
         psi: spins there [rad], shape (K + 1,).
         shares: where on each segment it is looked at, 0 to 1, shape (Q,).
-        out: out, shape (K, Q, 6, 5): rate in the wanted direction [rad/m]; its derivatives by the stand-off and by the
-            spin of the inner breakpoint, then of the outer one.
+        min_rate: what every joint has to keep [rad/m].
+        unit: length by which stand-offs are set against spins [m/rad] where rates are weighed; 0: they are not.
+        out: out, shape (K, Q, 6, 5): what the rate in the wanted direction has to spare [rad/m]; its derivatives by the
+            stand-off and by the spin of the inner breakpoint, then of the outer one.
     """
     segments, looks = standoff.shape[0] - 1, shares.shape[0]
-    where, turned = np.empty(5 * looks), np.empty(5 * looks)
-    theta_s, theta_psi = np.empty((6, 5 * looks)), np.empty((6, 5 * looks))
+    where, turned, spare = np.empty(5 * looks), np.empty(5 * looks), np.empty(5)
+    theta_s, theta_psi, weight = np.empty((6, 5 * looks)), np.empty((6, 5 * looks)), np.ones(5 * looks)
     for k in range(segments):
         length = standoff[k + 1] - standoff[k]
         slope = (psi[k + 1] - psi[k]) / length
@@ -129,14 +134,55 @@ def linearise(arm, plane, posture, side, standoff, psi, shares, out):  # type: i
             turned[5 * q + 3] += NUDGE
             turned[5 * q + 4] -= NUDGE
         rates(arm, plane, posture, where, turned, theta_s, theta_psi)
+        if unit > 0.0:
+            for n in range(5 * looks):
+                square = 1.0
+                for i in range(6):
+                    square += theta_psi[i, n] ** 2 + (unit * theta_s[i, n]) ** 2
+                weight[n] = 1.0 / square
         for q in range(looks):
             for i in range(6):
-                rate = side[i] * (theta_s[i, 5 * q : 5 * q + 5] + slope * theta_psi[i, 5 * q : 5 * q + 5])
-                by_s, by_psi = (rate[1] - rate[2]) / (2.0 * NUDGE), (rate[3] - rate[4]) / (2.0 * NUDGE)
-                by_slope = side[i] * theta_psi[i, 5 * q] / length
+                for n in range(5):
+                    at = 5 * q + n
+                    spare[n] = weight[at] * (side[i] * (theta_s[i, at] + slope * theta_psi[i, at]) - min_rate)
+                by_s, by_psi = (spare[1] - spare[2]) / (2.0 * NUDGE), (spare[3] - spare[4]) / (2.0 * NUDGE)
+                by_slope = weight[5 * q] * side[i] * theta_psi[i, 5 * q] / length
                 share = shares[q]
-                out[k, q, i, 0] = rate[0]
+                out[k, q, i, 0] = spare[0]
                 out[k, q, i, 1] = (1.0 - share) * by_s + by_slope * slope
                 out[k, q, i, 2] = (1.0 - share) * by_psi - by_slope
                 out[k, q, i, 3] = share * by_s - by_slope * slope
                 out[k, q, i, 4] = share * by_psi + by_slope
+
+
+@kernel
+def elbow(arm, plane, posture, standoff, psi):  # type: ignore[no-untyped-def]
+    """How far the elbow is from stretched or folded, which is where reach ends.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        posture: 0..3.
+        standoff: s [m].
+        psi: spin [rad].
+
+    Returns:
+        the square of the sine of the angle between the two links, and its derivatives by stand-off [1/m] and spin.
+    """
+    zx, zy, zz = plane.R_base_tcp0[2], plane.R_base_tcp0[5], plane.R_base_tcp0[8]
+    w0, w1, w2 = plane.wrist
+    _, cosine, sine = spun(plane, w0, w1, 0.0)
+    c, s = np.cos(psi), np.sin(psi)
+    rx, ry, rz = c * cosine[0] + s * sine[0], c * cosine[1] + s * sine[1], c * cosine[2] + s * sine[2]
+    along = standoff + w2
+    wx, wy = plane.target[0] + along * zx + rx, plane.target[1] + along * zy + ry
+    x1 = np.sqrt(wx * wx + wy * wy - arm.b * arm.b) * (-1.0 if posture >= 2 else 1.0)
+    x, z = x1 - arm.a1, plane.target[2] + along * zz + rz - arm.c1
+    k2 = arm.a2 * arm.a2 + arm.c3 * arm.c3
+    per_links = 1.0 / (2.0 * arm.c2 * np.sqrt(k2))
+    cos_phi = (x * x + z * z - arm.c2 * arm.c2 - k2) * per_links
+    # the wrist centre moves along z as the tool backs out, and at z x r as it spins
+    by_s = x * (wx * zx + wy * zy) / x1 + z * zz
+    by_psi = x * (wx * (zy * rz - zz * ry) + wy * (zz * rx - zx * rz)) / x1 + z * (zx * ry - zy * rx)
+    by_cos = -4.0 * cos_phi * per_links
+    return 1.0 - cos_phi * cos_phi, by_cos * by_s, by_cos * by_psi

@@ -318,10 +318,10 @@ class _Problem:
 
     def _look(self, keep: Array, asked: Asked, mode: int) -> tuple[Array, Array, Array]:
         """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
-        out = np.empty((4, self.psi.size, 3))
+        out = np.empty((4, self.psi.size, pairs.LOOKED))
         lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
         pairs.look(self.robot.arm, self.plane, self.psi, lines, keep, asked, mode, out)
-        value, margin, guess = np.moveaxis(out, -1, 0)
+        value, margin, guess = np.moveaxis(out[..., :3], -1, 0)
         return value, margin, guess
 
     def _best(self, keep: Array, asked: Asked, mode: int) -> _Pair | None:
@@ -404,7 +404,7 @@ class _Problem:
                     break
                 pairs.best_pair(
                     self.robot.arm, self.plane, posture, self.psi[m % self.psi.size], keep, asked, asked.unlimited(),
-                    self.branches, mode, NODES, np.inf, False, work, row,
+                    self.branches, mode, NODES, np.inf, work, row,
                 )  # fmt: skip
                 if np.isfinite(row[pairs.VALUE]):
                     found.append(m % self.psi.size)
@@ -429,7 +429,7 @@ class _Problem:
         row = np.empty(pairs.COLUMNS)
         pairs.descend(
             self.robot.arm, self.plane, posture, low, high, keep, asked, asked.unlimited(), self.branches, mode,
-            nodes, steps, bound, False, row,
+            nodes, steps, bound, row,
         )  # fmt: skip
         return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 

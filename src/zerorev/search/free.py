@@ -24,7 +24,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.line import climb, edge, golden
-from zerorev.search.segments import Goal, Legs, Rules, bettered, legs_through, motion_of
+from zerorev.search.segments import Goal, Rules, bettered, legs_through, motion_of
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
 
 __all__ = ["Grain", "Held", "deepest_free", "search_free"]
@@ -38,6 +38,7 @@ KEPT_BACK = (0.03, 0.1, 0.3)  # of the deepest stroke: where segments begin to b
 WORTH_ANOTHER = 1.1  # how much deeper curves must get from another place than segments do from the first
 SEGMENTS = (1, 2, 4, 8, 16)  # of a leg
 ROWS = 48  # of a tube that a motion is taken out of, at least
+GUARD = float(np.deg2rad(0.2))  # [rad/m] 0.0002 deg/mm aimed at beyond the threshold
 MORE = 0.01  # by which more segments have to be better
 GUARDS = tuple(np.deg2rad([0.0, 1.0, 4.0]).tolist())  # [rad/m] up to 0.004 deg/mm for what lies between the points
 
@@ -231,16 +232,14 @@ class _Problem:
                 return None
             tubes.append(rows)
             narrowed.append(viable)
-        better: Legs | None = legs_through(tubes, narrowed, count)
-        held, sense, at_target = self.held, self.sense.copy(), self.at_target.copy()
+        better = legs_through(tubes, narrowed, count)
+        held, sense = self.held, self.sense.copy()
         for guard in GUARDS:
             rules = Rules(
-                self.arm, self.plane, branch, sense, at_target, held.lower, held.upper,
-                held.min_rate + guard, held.steepest, held.psi_bound,
-            )  # fmt: skip
-            assert better is not None
-            better = bettered(rules, better, goal)
-            if better is None:
+                held.lower, held.upper, held.min_rate + guard + GUARD, held.steepest, held.psi_bound, held.longest_twist
+            )
+            better, lack = bettered(self.arm, self.plane, branch, sense, rules, better, goal)
+            if lack > GUARD:
                 return None
             profile = motion_of(better, periodic=self.periodic)
             hole = replace(self.hole, depth=better.depth, profile=None)
