@@ -10,14 +10,16 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.parts import Options, certificate, deepest, field, holes, optimum, start
+from benchmarks.parts import Options, certificate, deepest, field, holes, optimum, parameter_map, start, swarm
 from benchmarks.table import Section, load, page, save
 from zerorev.model.output import write_text
 
 PARTS: dict[str, Callable[[Options], Section]] = {
     "field": field.run,
     "optimum": optimum.run,
+    "swarm": swarm.run,
     "deepest": deepest.run,
+    "parameter_map": parameter_map.run,
     "certificate": certificate.run,
     "start": start.run,
     "holes": holes.run,

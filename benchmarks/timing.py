@@ -19,7 +19,7 @@ class Timed(Generic[T]):
 
     Attributes:
         values: one a round.
-        seconds: one a round, of the processor's time.
+        seconds: one a round, of the processor's time or as another clock has it.
     """
 
     values: tuple[T, ...]
@@ -36,12 +36,15 @@ class Timed(Generic[T]):
         return min(self.seconds)
 
 
-def in_turns(work: Mapping[str, Callable[[int], T]], rounds: int) -> dict[str, Timed[T]]:
+def in_turns(
+    work: Mapping[str, Callable[[int], T]], rounds: int, clock: Callable[[], float] = time.process_time
+) -> dict[str, Timed[T]]:
     """Run each piece of work once a round, after one run that is not timed (it may compile).
 
     Args:
         work: by name; called with the number of the round, which serves as the seed of what is random.
         rounds: how many.
+        clock: reads the time [s]; where threads share the work, the wall's.
     """
     for call in work.values():
         call(0)
@@ -49,9 +52,9 @@ def in_turns(work: Mapping[str, Callable[[int], T]], rounds: int) -> dict[str, T
     seconds: dict[str, list[float]] = {name: [] for name in work}
     for n in range(rounds):
         for name, call in work.items():
-            began = time.process_time()
+            began = clock()
             value = call(n)
-            seconds[name].append(time.process_time() - began)
+            seconds[name].append(clock() - began)
             values[name].append(value)
     return {name: Timed(tuple(values[name]), tuple(seconds[name])) for name in work}
 

@@ -15,11 +15,12 @@ import zerorev as zr
 from benchmarks.arm_numpy import wrapped
 from benchmarks.cases import NO_THRESHOLD, Answer, Case, drilled, exact, mirrored, random_place
 from benchmarks.parts import Options
-from benchmarks.peers.evolution import BUDGET, attack, evolution
+from benchmarks.peers.evolution import attack, evolution
 from benchmarks.peers.objective import NumbaObjective, graded
 from benchmarks.peers.swarm import swarm
 from benchmarks.scorer import Verdict, compare, rescore, words
 from benchmarks.table import Section
+from zerorev.search.methods import BUDGET
 
 __all__ = ["run"]
 

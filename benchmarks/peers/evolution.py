@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
-from scipy.optimize import differential_evolution
 
 from benchmarks.cases import Answer
 from benchmarks.peers.objective import Objective
-from benchmarks.peers.swarm import BOUND, ITERATIONS, PARTICLES
-from zerorev.model._arrays import Array
+from benchmarks.peers.swarm import BOUND
+from zerorev.search.methods import BUDGET
+from zerorev.search.scipy_methods import differential_evolution
+from zerorev.search.trial import Trial
 
 __all__ = ["attack", "evolution"]
-
-BUDGET = PARTICLES * (ITERATIONS + 1)
-POPULATION = 45
 
 
 def evolution(objective: Objective, seed: int, budget: int = BUDGET) -> Answer:
@@ -24,7 +24,9 @@ def evolution(objective: Objective, seed: int, budget: int = BUDGET) -> Answer:
         seed: of all that is random.
         budget: evaluations, at most.
     """
-    return _evolve(objective, [(-BOUND, BOUND)] * 3, seed, budget, tolerance=0.01)
+    trial = Trial(objective, budget, np.full(3, -BOUND), np.full(3, BOUND))
+    trial.run(partial(differential_evolution, tolerance=0.01), seed)
+    return objective.answer(trial.best)
 
 
 def attack(objective: Objective, answer: Answer, seed: int, within: float, budget: int = BUDGET) -> Answer:
@@ -38,28 +40,5 @@ def attack(objective: Objective, answer: Answer, seed: int, within: float, budge
         budget: evaluations, at most.
     """
     spins = answer.profile.psi
-    return _evolve(objective, [(psi - within, psi + within) for psi in spins], seed, budget, tolerance=0.0, first=spins)
-
-
-def _evolve(
-    objective: Objective,
-    bounds: list[tuple[float, float]],
-    seed: int,
-    budget: int,
-    *,
-    tolerance: float,
-    first: Array | None = None,
-) -> Answer:
-    found = differential_evolution(
-        lambda x: objective(x.T),
-        bounds,
-        popsize=POPULATION // 3,
-        maxiter=budget // POPULATION - 1,
-        rng=seed,
-        tol=tolerance,
-        polish=False,
-        vectorized=True,
-        updating="deferred",
-        x0=first,
-    )
-    return objective.answer(np.asarray(found.x))
+    trial = Trial(objective, budget, spins - within, spins + within)
+    return objective.answer(trial.run(partial(differential_evolution, first=spins), seed).best)

@@ -1,4 +1,4 @@
-"""The thesis' objective (eq. 4.7) of many motions at once: one peer in Numba, one in plain NumPy.
+"""The thesis' objective (eq. 4.7) of many motions at once: zerorev's own, and an independent twin in plain NumPy.
 
     f = 6/7 * reversals / 6 + 1/7 * travel / (6 * 360 deg) + jump + limit + fault
 
@@ -8,31 +8,28 @@ the extents of the whole path are known. A path with a pose out of reach costs 1
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
 from benchmarks.arm_numpy import inverse, wrapped
 from benchmarks.cases import Answer, Case
-from zerorev.kernels.arm import controller_angles, solve_posture
-from zerorev.kinematics import tcp_pose, twist_plane
+from zerorev.kinematics import tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
+from zerorev.search.sampled import SAMPLES, Judged, SampledObjective, crowded_fractions, even_fractions
 
-__all__ = ["STEPS", "NumbaObjective", "NumpyObjective", "Objective", "graded"]
+__all__ = ["NumbaObjective", "NumpyObjective", "Objective", "graded"]
 
-STEPS = 200  # on the whole path (thesis sec. 4.2)
 STILL = 1e-12  # [rad] a step that is none
 JUMP = 0.5  # [rad] a step that no drilling motion makes
 HALF_TURNS = np.array([0.0, 0.0, 0.0, np.pi, 0.0, np.pi])  # from one wrist flip to the other, but for A5
 
 
-def graded(nearest: float = 1e-6) -> Array:
+def graded() -> Array:
     """Samples of a leg that crowd at both of its ends, as fractions of it: where joints come to rest without notice.
 
     Evenly spread samples overlook a reversal in the first step next to the target, and a swarm settles there.
     """
-    half = np.concatenate([[0.0], np.geomspace(nearest, 0.5, STEPS // 4)])
-    return np.unique(np.concatenate([half, 1 - half]))
+    return crowded_fractions(SAMPLES)
 
 
 class Objective:
@@ -40,12 +37,18 @@ class Objective:
 
     def __init__(self, case: Case, fractions: Array | None = None) -> None:
         self.case, self.evaluations = case, 0
-        self.fractions = np.linspace(0.0, 1.0, STEPS // 2 + 1) if fractions is None else fractions
+        self.fractions = even_fractions(SAMPLES) if fractions is None else fractions
 
     def __call__(self, spins: Array) -> Array:
         """Cost of motions given by (psi_start, psi_target, psi_end) [rad], shape (P, 3); returns (P,)."""
+        return self.judged(spins).score
+
+    def judged(self, spins: Array) -> Judged:
+        """Cost, branch and reversals of the same motions, as zerorev's swarm asks for them."""
         self.evaluations += len(spins)
-        return np.asarray(self.costs(spins).min(axis=1))
+        costs = self.costs(spins)
+        least = costs.min(axis=1)
+        return Judged(least, costs.argmin(axis=1), (7 * least).astype(np.int64))
 
     def answer(self, spins: Array) -> Answer:
         """One motion, shape (3,), on its best branch."""
@@ -58,7 +61,27 @@ class Objective:
 
     def costs(self, spins: Array) -> Array:
         """Cost on each branch, shape (P, 8)."""
-        cost, low, high = self.postures(np.ascontiguousarray(spins, dtype=float))
+        raise NotImplementedError
+
+
+class NumbaObjective(Objective):
+    """The product's own, on one thread."""
+
+    def __init__(self, case: Case, fractions: Array | None = None) -> None:
+        super().__init__(case, fractions)
+        self.sampled = SampledObjective(case.robot, case.tool, case.hole, fractions=self.fractions, threads=1)
+
+    def costs(self, spins: Array) -> Array:
+        """Cost on each branch."""
+        return self.sampled.on_branches(spins)[0]
+
+
+class NumpyObjective(Objective):
+    """Vectorised over motions, samples and branches, inverse kinematics included."""
+
+    def costs(self, spins: Array) -> Array:
+        """Cost on each branch."""
+        cost, low, high = self._postures(np.asarray(spins, dtype=float))
         limits = self.case.robot.limits
         # the other wrist flip makes the same steps, but for the sign of A5's: it differs in limits alone
         flipped_low, flipped_high = low + HALF_TURNS, high + HALF_TURNS
@@ -67,16 +90,8 @@ class Objective:
         first, last = np.ceil((limits.lower - low) / (2 * np.pi)), np.floor((limits.upper - high) / (2 * np.pi))
         return np.asarray((cost[..., None] + (first > last).any(axis=-1)).reshape(-1, 8))
 
-    def postures(self, spins: Array) -> tuple[Array, Array, Array]:
+    def _postures(self, spins: Array) -> tuple[Array, Array, Array]:
         """Cost but for limits, shape (P, 4), and the joints' extents with A5 >= 0, each (P, 4, 6), NaN at a fault."""
-        raise NotImplementedError
-
-
-class NumpyObjective(Objective):
-    """Vectorised over motions, samples and branches, inverse kinematics included."""
-
-    def postures(self, spins: Array) -> tuple[Array, Array, Array]:
-        """Cost but for limits, and extents."""
         x = self.fractions
         start, target, end = (spins[:, i, None] for i in range(3))
         psi = np.concatenate([target + x[::-1] * (start - target), (target + x * (end - target))[:, 1:]], axis=1)
@@ -99,81 +114,3 @@ def _reversals(steps: Array) -> Array:
         last = np.maximum.accumulate(np.where(signs != 0, place, 0), axis=1)
         signs = np.take_along_axis(signs, last, axis=1)
     return np.asarray((signs[:, 1:] * signs[:, :-1] < 0).sum(axis=(1, 3)))
-
-
-class NumbaObjective(Objective):
-    """Compiled, one motion after the other, on the project's own kinematics."""
-
-    def __init__(self, case: Case, fractions: Array | None = None) -> None:
-        super().__init__(case, fractions)
-        self.plane = twist_plane(case.robot, case.tool, case.hole)
-
-    def postures(self, spins: Array) -> tuple[Array, Array, Array]:
-        """Cost but for limits, and extents."""
-        cost, extents = np.empty((len(spins), 4)), np.empty((2, len(spins), 4, 6))
-        _postures(self.case.robot.arm, self.plane, self.case.hole.depth, self.fractions, spins, cost, *extents)
-        return cost, extents[0], extents[1]
-
-
-@numba.njit(nogil=True, error_model="numpy")
-def _postures(arm, plane, depth, fractions, spins, out, lowest, highest):  # type: ignore[no-untyped-def]
-    last = fractions.size - 1
-    cs, joints, before, angle, direction = np.empty((6, 2)), np.empty(6), np.empty(6), np.empty(6), np.empty(6)
-    for p in range(spins.shape[0]):
-        for posture in range(4):
-            low, high = lowest[p, posture], highest[p, posture]
-            direction[:] = 0.0
-            reversals, travel, jump = 0, 0.0, 0.0
-            for n in range(2 * last + 1):
-                x = fractions[abs(n - last)]
-                outer = spins[p, 0] if n < last else spins[p, 2]
-                psi = spins[p, 1] + x * (outer - spins[p, 1])
-                if not _pose(arm, plane, x * depth, psi, posture, cs):
-                    reversals = -1
-                    break
-                controller_angles(arm, cs, False, joints)
-                for i in range(6):
-                    if n == 0:
-                        angle[i] = low[i] = high[i] = joints[i]
-                    else:
-                        step = joints[i] - before[i]
-                        if step > np.pi:
-                            step -= 2.0 * np.pi
-                        elif step < -np.pi:
-                            step += 2.0 * np.pi
-                        travel += abs(step)
-                        if abs(step) > JUMP:
-                            jump = 1.0
-                        if abs(step) > STILL:
-                            if step * direction[i] < 0.0:
-                                reversals += 1
-                            direction[i] = step
-                        angle[i] += step
-                        low[i], high[i] = min(low[i], angle[i]), max(high[i], angle[i])
-                    before[i] = joints[i]
-            if reversals < 0:
-                out[p, posture], low[:], high[:] = 1.0, np.nan, np.nan
-            else:
-                out[p, posture] = reversals / 7.0 + travel / (84.0 * np.pi) + jump
-
-
-@numba.njit(nogil=True, error_model="numpy")
-def _pose(arm, plane, standoff, psi, posture, cs):  # type: ignore[no-untyped-def]
-    """Cosines and sines of the joints at one point of the twist plane; whether it is in reach."""
-    c, s = np.cos(psi), np.sin(psi)
-    x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
-    a0, a1, a2 = c * x0 + s * y0, c * x1 + s * y1, c * x2 + s * y2
-    b0, b1, b2 = c * y0 - s * x0, c * y1 - s * x1, c * y2 - s * x2
-    f00, f01, f02, f10, f11, f12, f20, f21, f22 = plane.R_tcp_flange
-    R = (
-        a0 * f00 + b0 * f10 + zx * f20, a0 * f01 + b0 * f11 + zx * f21, a0 * f02 + b0 * f12 + zx * f22,
-        a1 * f00 + b1 * f10 + zy * f20, a1 * f01 + b1 * f11 + zy * f21, a1 * f02 + b1 * f12 + zy * f22,
-        a2 * f00 + b2 * f10 + zz * f20, a2 * f01 + b2 * f11 + zz * f21, a2 * f02 + b2 * f12 + zz * f22,
-    )  # fmt: skip
-    w0, w1, w2 = plane.wrist
-    t0, t1, t2 = plane.target
-    along = standoff + w2
-    wx, wy, wz = (
-        t0 + along * zx + a0 * w0 + b0 * w1, t1 + along * zy + a1 * w0 + b1 * w1, t2 + along * zz + a2 * w0 + b2 * w1,
-    )  # fmt: skip
-    return solve_posture(arm, R, wx, wy, wz, posture, cs)

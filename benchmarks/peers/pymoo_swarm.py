@@ -2,31 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from pymoo.algorithms.soo.nonconvex.pso import PSO
-from pymoo.core.problem import Problem
-from pymoo.optimize import minimize
 
 from benchmarks.cases import Answer
-from benchmarks.peers.evolution import BUDGET
 from benchmarks.peers.objective import Objective
-from benchmarks.peers.swarm import BOUND, PARTICLES
-from zerorev.model._arrays import Array
+from benchmarks.peers.swarm import BOUND
+from zerorev.search.methods import BUDGET
+from zerorev.search.population_methods import pymoo_pso
+from zerorev.search.trial import Trial
 
 __all__ = ["pymoo_swarm"]
-
-
-class _Motions(Problem):  # type: ignore[misc]
-    """Three spins within +-180 deg."""
-
-    def __init__(self, objective: Objective) -> None:
-        super().__init__(n_var=3, n_obj=1, xl=-BOUND, xu=BOUND)
-        self.objective = objective
-
-    def _evaluate(self, x: Array, out: dict[str, Array], *_: Any, **__: Any) -> None:
-        out["F"] = self.objective(x)[:, None]
 
 
 def pymoo_swarm(objective: Objective, seed: int, budget: int = BUDGET) -> Answer:
@@ -37,5 +22,5 @@ def pymoo_swarm(objective: Objective, seed: int, budget: int = BUDGET) -> Answer
         seed: of all that is random.
         budget: evaluations.
     """
-    found = minimize(_Motions(objective), PSO(pop_size=PARTICLES), ("n_eval", budget), seed=seed)
-    return objective.answer(np.asarray(found.X))
+    trial = Trial(objective, budget, np.full(3, -BOUND), np.full(3, BOUND)).run(pymoo_pso, seed)
+    return objective.answer(trial.best)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import App, Parameter
+from cyclopts import App, Parameter, Token
 
 from zerorev.errors import InputError, OutputError
 
 __all__ = [
-    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "app", "need", "not_over", "numbers",
+    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "Whole", "app", "need",
+    "not_over", "numbers",
 ]  # fmt: skip
 
 FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
@@ -49,6 +51,17 @@ app = App(
 )
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"])]
+
+
+def _whole(kind: object, tokens: Sequence[Token]) -> int:
+    """An integer; cyclopts itself would round."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"'{tokens[0].value}' is no integer") from None
+
+
+Whole = Annotated[int, Parameter(converter=_whole)]
 
 
 def not_over(output: Path, source: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from zerorev.cli.common import FINE, Output, app, need, not_over
+from zerorev.cli.common import FINE, Output, Whole, app, need, not_over
 from zerorev.errors import InputError
 from zerorev.report import terminal
 
@@ -20,9 +20,11 @@ def compare(
     /,
     *,
     methods: str = USUAL,
-    seeds: int = 20,
+    seeds: Whole = 20,
     hole: str | None = None,
-    budget: int | None = None,
+    budget: Whole | None = None,
+    samples: Whole | None = None,
+    crowded: bool = False,
     output: Output = None,
     figure: Path | None = None,
     json: bool = False,
@@ -39,6 +41,8 @@ def compare(
         seeds: How many runs of each method, with the seeds 0, 1, 2, ...; a method without chance runs once.
         hole: The id of the only hole to compare at.
         budget: Evaluations a run at most; by default 5,100, the thesis'.
+        samples: Steps of a motion that the objective looks at; by default 200, the thesis'.
+        crowded: The samples crowd at the ends of the legs, where reversals hide between even ones, as the thesis' are.
         output: Where to write the answer: JSON, or a row a run where it ends in .csv.
         figure: Picture to draw (PNG): box plots.
         json: Print the answer as JSON on standard output, and nothing else there.
@@ -59,10 +63,11 @@ def compare(
     from zerorev.compare import comparison, runs
     from zerorev.model.text import json_text
     from zerorev.report import comparison as shown
-    from zerorev.search.methods import BUDGET
 
+    given = {"budget": budget, "samples": samples}
+    limits = {key: value for key, value in given.items() if value is not None}
     names = [name.strip() for name in methods.split(",") if name.strip()]
-    asked = comparison(wanted, names, range(seeds), budget=BUDGET if budget is None else budget, hole=hole)
+    asked = comparison(wanted, names, range(seeds), hole=hole, crowded=crowded, **limits)
     found, interrupted = [], False
     try:
         with terminal.progress("comparing", asked.expected, each="run") as progress:

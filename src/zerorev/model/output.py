@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+import shutil
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from zerorev.errors import OutputError
 
-__all__ = ["as_output_error", "check_file", "check_folder", "make_folder", "write_bytes", "write_pieces", "write_text"]
+__all__ = [
+    "as_output_error", "check_file", "check_folder", "check_whole_folder", "make_folder", "write_bytes", "write_pieces",
+    "write_text", "write_whole_folder",
+]  # fmt: skip
 
 
 def check_file(path: str | Path) -> None:
@@ -52,6 +56,52 @@ def make_folder(path: str | Path) -> None:
     check_folder(path)
     with as_output_error(path):
         Path(path).mkdir(exist_ok=True)
+
+
+def check_whole_folder(path: str | Path, mark: str) -> None:
+    """Make sure, before long work, that `write_whole_folder` can do its own.
+
+    Raises:
+        OutputError: as `check_folder`, or there is a folder of that name that holds something else.
+    """
+    check_folder(path)
+    with as_output_error(path):
+        target = Path(os.path.realpath(path))
+        if target.exists() and any(target.iterdir()) and not (target / mark).is_file():
+            raise OutputError(str(path), f"it is a folder without {mark}, which holds something else")
+        _check_access(path, target.parent)
+
+
+def write_whole_folder(path: str | Path, mark: str, fill: Callable[[Path], None]) -> None:
+    """Write a folder whole or not at all: filled beside, then renamed; an older one is replaced once it is whole.
+
+    Args:
+        path: the folder.
+        mark: a file of such a folder, by which an older one is known.
+        fill: writes the files into a new, empty folder.
+
+    Raises:
+        OutputError: as `check_whole_folder`, or a full disk.
+    """
+    check_whole_folder(path, mark)
+    with as_output_error(path):
+        target = Path(os.path.realpath(path))
+        beside, before = (target.with_name(f".{target.name}.{os.getpid()}.{end}") for end in ("tmp", "old"))
+        beside.mkdir()
+        try:
+            fill(beside)
+            if target.exists():
+                os.rename(target, before)
+            try:
+                os.rename(beside, target)
+            except BaseException:
+                if before.exists():
+                    os.rename(before, target)
+                raise
+        finally:
+            shutil.rmtree(beside, ignore_errors=True)
+            if target.exists():
+                shutil.rmtree(before, ignore_errors=True)
 
 
 def write_text(path: str | Path, text: str) -> None:

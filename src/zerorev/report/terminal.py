@@ -95,26 +95,26 @@ def print_file(path: Path) -> None:
 
 
 @contextlib.contextmanager
-def progress(what: str, total: int) -> Iterator[Callable[[int, int], None] | None]:
+def progress(what: str, total: int, each: str = "hole") -> Iterator[Callable[[int, int], None] | None]:
     """How far it is, how fast, and how long it takes yet: a bar on a terminal, a line now and then elsewhere.
 
-    What is called with (done, total) the first time counts as done before.
+    What is called with (done, total) the first time counts as done before; `each` is what is counted.
     """
     console = err()
     if total < 2:
         yield None
         return
     if not console.is_terminal:
-        yield _Lines(what)
+        yield _Lines(what, each)
         return
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, Task, TextColumn, TimeRemainingColumn
 
     class Rate(TextColumn):
-        """Holes a second."""
+        """How many a second."""
 
         def render(self, task: Task) -> Text:
             """Of the last half minute."""
-            return Text("" if task.speed is None else f"{_rate(task.speed)}, left:")
+            return Text("" if task.speed is None else f"{_rate(task.speed, each)}, left:")
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(""), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -131,8 +131,8 @@ def progress(what: str, total: int) -> Iterator[Callable[[int, int], None] | Non
 class _Lines:
     """Progress as lines of a log, for work that takes long."""
 
-    def __init__(self, what: str) -> None:
-        self.what = what
+    def __init__(self, what: str, each: str) -> None:
+        self.what, self.each = what, each
         self.began: tuple[float, int] | None = None
         self.told = 0.0
 
@@ -145,11 +145,11 @@ class _Lines:
         self.told = now
         rate = (done - self.began[1]) / (now - self.began[0])
         left = f", {_duration((of - done) / rate)} left" if rate > 0 else ""
-        note(f"{self.what}: {done} of {of} holes, {_rate(rate)}{left}")
+        note(f"{self.what}: {done} of {of} {self.each}s, {_rate(rate, self.each)}{left}")
 
 
-def _rate(per_second: float) -> str:
-    return f"{per_second:.1f} holes/s" if per_second >= 1 or per_second == 0 else f"{1 / per_second:.1f} s/hole"
+def _rate(per_second: float, each: str) -> str:
+    return f"{per_second:.1f} {each}s/s" if per_second >= 1 or per_second == 0 else f"{1 / per_second:.1f} s/{each}"
 
 
 def _duration(seconds: float) -> str:

@@ -24,12 +24,14 @@ from zerorev.model.plan import HolePlan, Motion, Plan
 
 __all__ = [
     "BASELINE_COLOUR",
+    "CANNOT_RUN",
     "CASING",
     "DASHES",
     "INK",
     "JOINT_COLOURS",
     "JOINT_INKS",
     "MUTED",
+    "REVERSAL_COLOURS",
     "bare_axes",
     "deg_per_mm",
     "headed_figure",
@@ -47,6 +49,9 @@ __all__ = [
 JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9")
 # the same, dark enough for letters on white
 JOINT_INKS = ("#005a8f", "#8a5f00", "#00694c", "#a84a00", "#99487a", "#1c6d9e")
+# 0, 1, ... 5, and 6 or more reversals: none is blue, some are the darker the more; and a motion that cannot be run
+REVERSAL_COLOURS = ("#0072B2", "#ffe8a3", "#fec44f", "#fb9a3c", "#e5691b", "#b53d0b", "#671f0a")
+CANNOT_RUN = "#b8b8b8"
 # told apart without colour, too
 DASHES: tuple[Any, ...] = (
     "-",

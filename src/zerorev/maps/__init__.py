@@ -1,0 +1,1 @@
+"""Maps: an objective looked at everywhere on a grid, kept with its coordinates."""
