@@ -26,10 +26,11 @@ DEPTH, TRAVEL, MARGIN, PLUNGE_ROTATION = range(4)
 TRUSTED_TURN = 0.2  # [rad] by which a spin moves in one step, at most
 TRUSTED_STRETCH = 0.1  # by which the depth changes, relative
 FIRST_TRUST, LEAST_TRUST = 0.5, 1e-4  # shares of the two
-APPROACH = 0.9  # share of the way to the end of the reach that one step may go
+LEAST_BEND = 1e-4  # of the elbow, as `elbow` measures it: about 0.01 mm from the end of the reach
 CLEAN = 1e-8  # [rad/m] that may lack at the end; else the price of it is raised
 RAISE, RAISES = 30.0, 2
 ROOMY = 1e-5  # what a rate to spare is worth, against one that lacks: what does not matter else is laid in the middle
+HALVINGS = 6  # of a step that cannot be run
 FOLLOWED = 8  # steps of a leg, at least, in which joints are followed to its end
 WRONG_WAY = 0.5 * np.pi  # [rad] by which a joint that should go the other way goes in one of them, at most
 ROUNDING = 1e-7  # [rad/m] of a limit that is just kept
@@ -94,11 +95,17 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
             price, trust, raised = RAISE * price, FIRST_TRUST, raised + 1
             continue
         for corrected in range(2):
-            _move(share, standoff, psi, step, there)
-            lack_there = _look(
-                arm, plane, branch, sense, asked, there[0], there[1], rates,
-                at[1 - here], by[1 - here], spare[1 - here], cost[1 - here],
-            )  # fmt: skip
+            for _ in range(HALVINGS):
+                _move(share, standoff, psi, step, there)
+                lack_there = _look(
+                    arm, plane, branch, sense, asked, there[0], there[1], rates,
+                    at[1 - here], by[1 - here], spare[1 - here], cost[1 - here],
+                )  # fmt: skip
+                if lack_there < np.inf:
+                    break
+                # over the end of the reach, which is curved
+                step *= 0.5
+                foretold *= 0.5
             gain = _worth(goal, price, lack) - _worth(goal, price, lack_there)
             for i in range(size - 2):
                 gain -= cost[here, i] * step[i]
@@ -180,11 +187,16 @@ def _look(arm, plane, branch, sense, asked, standoff, psi, rates, at, by, spare,
                     by[r, 0] = share[k, n] * found[1] + share[k, n + 1] * found[3]
                     by[r, 1], by[r, 2], by[r, 3], by[r, 4] = found[2], found[4], 1.0, -1.0
                     r += 1
-                # nothing is known beyond the reach, so only a part of the way there is gone at once
+                # nothing is known beyond the reach, and its end is curved, so the elbow stays a hair away from it
                 part = shares[q]
                 s, turned = standoff[k, n] + part * length, psi[k, n] + part * (psi[k, n + 1] - psi[k, n])
                 bend, by_s, by_psi = elbow(arm, plane, branch // 2, s, turned)
-                spare[r] = APPROACH * bend
+                spare[r] = bend - LEAST_BEND
+                if goal == MARGIN:  # which the elbow is no part of
+                    spare[r] = max(spare[r], 0.0)
+                else:
+                    lack = max(lack, -spare[r])
+                    by[r, 3], by[r, 4] = 1.0, -1.0
                 at[r, 1], at[r, 2] = _spin(k, n, segments), _spin(k, n + 1, segments)
                 by[r, 0] = by_s * (share[k, n] + part * (share[k, n + 1] - share[k, n]))
                 by[r, 1], by[r, 2] = (1.0 - part) * by_psi, part * by_psi
