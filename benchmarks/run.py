@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.parts import Options, certificate, deepest, field, holes, optimum, parameter_map, start, swarm
+from benchmarks.parts import Options, certificate, deepest, field, holes, job, optimum, parameter_map, start, swarm
 from benchmarks.table import Section, load, page, save
 from zerorev.model.output import write_text
 
@@ -22,6 +22,7 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "parameter_map": parameter_map.run,
     "certificate": certificate.run,
     "start": start.run,
+    "job": job.run,
     "holes": holes.run,
 }
 PEERS = ("numpy", "numba", "scipy", "pymoo", "EAIK", "py-opw-kinematics", "python-flint")

@@ -16,14 +16,16 @@ class Options:
         rounds: of what is timed and not random.
         holes: at random places.
         poses: in a batch.
+        jobs: numbers of holes of whole jobs.
     """
 
     seeds: int = 20
     rounds: int = 15
     holes: int = 200
     poses: int = 20_000
+    jobs: tuple[int, ...] = (100, 400, 1600)
 
     @classmethod
     def quick(cls) -> Options:
         """Enough to see that everything runs; the figures mean nothing."""
-        return cls(seeds=2, rounds=3, holes=4, poses=2_000)
+        return cls(seeds=2, rounds=3, holes=4, poses=2_000, jobs=(60, 120))
