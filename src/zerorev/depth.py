@@ -35,12 +35,13 @@ STEP = 1.5  # from one depth of the coarse look to the next
 MOST_LOOKS = 16
 SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
 LOOKS = 9  # points of a leg
-ENOUGH = 1e-7  # relative: less is no gain
+ROUGH, ENOUGH = 1e-6, 1e-7  # relative: less is no gain
 ENOUGH_LACK = 1e-6  # [rad/m]
+SHORTER = 0.4  # of the legs of a start
 SPARE = 1e-3 * LEAST_RATE  # kept to the threshold, for rounding
 # points of a leg, and the share of the depth kept back: at the deepest a joint stops, so a plan ends a little before,
 # and where rates change steeply next to the end of the reach it takes many points to see that it does
-CLOSER = ((65, 1e-5), (257, 1e-5), (257, 1e-4), (257, 1e-3), (257, 3e-3), (257, 6e-3), (257, 1e-2))
+CLOSER = ((33, 1e-5), (65, 1e-5), (257, 1e-5), (257, 1e-4), (257, 1e-3), (257, 3e-3), (257, 6e-3), (257, 1e-2))
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,7 @@ class _Search:
         self.rules = Rules(
             limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, self.min_rate, psi_bound=settings.psi_bound or 0.0
         )
+        self.valleys: set[tuple[int, float, float]] = set()  # gone down: posture, depth, spin at the target
         self.unlimited = self.rules._replace(lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
 
     def run(self) -> Deepest:
@@ -200,18 +202,25 @@ class _Search:
         if sense is None:
             return []
         # limits seldom bind: what is deepest without them is often within them, and nothing is deeper
-        deepest, _ = self._go(2 * start.posture, sense, self.unlimited, start.legs, "depth", LOOKS, weighed=True)
+        deepest, _ = self._go(
+            2 * start.posture, sense, self.unlimited, start.legs, "depth", LOOKS, enough=ROUGH, weighed=True
+        )
         ends = []
-        if deepest.depth > beaten:
+        valley = start.posture, round(deepest.depth / self.stretched, 4), round(float(deepest.psi[0, 0]), 3)
+        if deepest.depth > beaten and valley not in self.valleys:
+            self.valleys.add(valley)
             for branch in (2 * start.posture, 2 * start.posture + 1):
                 if not self.branches[branch]:
                     continue
                 _, lack = self._go(branch, sense, self.rules, deepest, "depth", LOOKS, steps=0, weighed=True)
-                legs = deepest
-                if lack > ENOUGH_LACK:
-                    legs, lack = self._go(branch, sense, self.rules, start.legs, "depth", LOOKS, weighed=True)
                 if lack <= ENOUGH_LACK:
-                    ends.append(_End(legs, branch, sense))
+                    ends.append(_End(deepest, branch, sense))
+                    continue
+                # which limit is met first depends on where one comes from, so from shorter legs, too
+                for begin in (start.legs, _shortened(start.legs, SHORTER)):
+                    legs, lack = self._go(branch, sense, self.rules, begin, "depth", LOOKS, enough=ROUGH, weighed=True)
+                    if lack <= ENOUGH_LACK:
+                        ends.append(_End(legs, branch, sense))
         return ends
 
     def _sense(self, start: _Start) -> Array | None:
@@ -223,11 +232,11 @@ class _Search:
 
     def _go(
         self, branch: int, sense: Array, rules: Rules, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
-        weighed: bool = False,
+        enough: float = ENOUGH, weighed: bool = False,
     ) -> tuple[Legs, float]:  # fmt: skip
         return bettered(
             self.robot.arm, self.plane, branch, sense, rules, legs, goal,
-            looks=looks, steps=steps, enough=ENOUGH, weighed=weighed,
+            looks=looks, steps=steps, enough=enough, weighed=weighed,
         )  # fmt: skip
 
     def _settled(self, end: _End) -> Deepest | None:
@@ -235,8 +244,7 @@ class _Search:
         rules = self.rules._replace(min_rate=self.min_rate + SPARE)
         for looks, kept_back in CLOSER:
             deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", looks, weighed=True)
-            share = 1 - kept_back
-            room = Legs(deepest.standoff * share, deepest.psi[:, :1] + share * (deepest.psi - deepest.psi[:, :1]))
+            room = _shortened(deepest, 1 - kept_back)
             room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
             profile = motion_of(room, periodic=self.psi_bound is None)
             hole = replace(self.hole, depth=room.depth)
@@ -244,3 +252,8 @@ class _Search:
             if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
                 return Deepest(room.depth, profile, end.branch)
         return None
+
+
+def _shortened(legs: Legs, share: float) -> Legs:
+    """The inner part of two legs."""
+    return Legs(legs.standoff * share, legs.psi[:, :1] + share * (legs.psi - legs.psi[:, :1]))

@@ -29,7 +29,7 @@ FIRST_TRUST, LEAST_TRUST = 0.5, 1e-4  # shares of the two
 LEAST_BEND = 1e-4  # of the elbow, as `elbow` measures it: about 0.01 mm from the end of the reach
 CLEAN = 1e-8  # [rad/m] that may lack at the end; else the price of it is raised
 RAISE, RAISES = 30.0, 2
-ROOMY = 1e-5  # what a rate to spare is worth, against one that lacks: what does not matter else is laid in the middle
+ROOMY = 1e-6  # what a rate to spare is worth, against one that lacks: what does not matter else is laid in the middle
 HALVINGS = 6  # of a step that cannot be run
 FOLLOWED = 8  # steps of a leg, at least, in which joints are followed to its end
 WRONG_WAY = 0.5 * np.pi  # [rad] by which a joint that should go the other way goes in one of them, at most
@@ -76,7 +76,7 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
 
     scale, price = 1.0, 30.0
     if goal == DEPTH:
-        scale, price = standoff[0, segments], 100.0 * standoff[0, segments]
+        scale, price = standoff[0, segments], 1000.0 * standoff[0, segments]
     elif goal == MARGIN:
         scale, price = rules.min_rate, 1.0
     here, trust, raised = 0, FIRST_TRUST, 0
