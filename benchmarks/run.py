@@ -10,7 +10,19 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.parts import Options, certificate, deepest, field, holes, job, optimum, parameter_map, start, swarm
+from benchmarks.parts import (
+    Options,
+    certificate,
+    deepest,
+    field,
+    holes,
+    job,
+    maps,
+    optimum,
+    parameter_map,
+    start,
+    swarm,
+)
 from benchmarks.table import Section, load, page, save
 from zerorev.model.output import write_text
 
@@ -20,6 +32,7 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "swarm": swarm.run,
     "deepest": deepest.run,
     "parameter_map": parameter_map.run,
+    "map": maps.run,
     "certificate": certificate.run,
     "start": start.run,
     "job": job.run,

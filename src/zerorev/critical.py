@@ -92,7 +92,9 @@ def bracket(theta_s: Array, theta_psi: Array, min_rate: float) -> tuple[Array, A
         beyond = min_rate / np.abs(theta_psi)
     still = np.isnan(kappa) & ~np.isnan(theta_s)  # a joint that does not move at all does not reverse
     above = np.where(still, -np.inf, kappa + beyond).max(axis=-1)
-    below = np.where(still, np.inf, np.where(np.isinf(kappa), -np.inf, kappa - beyond)).min(axis=-1)
+    with np.errstate(invalid="ignore"):  # both infinite, where the spin does not move a joint
+        less = np.where(np.isinf(kappa), -np.inf, kappa - beyond)
+    below = np.where(still, np.inf, less).min(axis=-1)
     return below, above
 
 

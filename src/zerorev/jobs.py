@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-import logging
 import os
-import signal
 import sys
-import threading
-from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from itertools import islice
-from multiprocessing import connection, get_context, parent_process
+from collections.abc import Callable, Generator
 
-from zerorev.errors import InputError, ZerorevError
+from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.part import Part
@@ -23,10 +14,10 @@ from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.planning import lever_findings, plan, plan_deepest
+from zerorev.workers import Workers, interrupts_held_back
 
 __all__ = ["answers", "plan_job", "unanswered", "workers_for"]
 
-AHEAD = 8  # holes that each worker may be ahead of the first that is not finished
 WORTH_WORKERS = 60  # holes of a job below which starting workers takes longer than they save
 
 
@@ -79,11 +70,12 @@ def answers(
         for answer in part.answers():
             done += 1
             yield answer
-    for answer in _answered(job, job.holes[done:], strokes, workers):
-        if part is not None:
-            with _interrupts_held_back():  # a hole is kept and counted, or neither
-                part.append(answer)
-        yield answer
+    with Workers(_Planner(job.robot, job.tool, job.settings, strokes), workers) as planners:
+        for answer in planners.map(job.holes[done:]):
+            if part is not None:
+                with interrupts_held_back():  # a hole is kept and counted, or neither
+                    part.append(answer)
+            yield answer
 
 
 def workers_for(holes: int, wanted: int | None) -> int:
@@ -104,32 +96,6 @@ def workers_for(holes: int, wanted: int | None) -> int:
     return wanted
 
 
-def _answered(job: Job, holes: Sequence[Hole], strokes: Strokes, workers: int) -> Iterator[HolePlan]:
-    here = _Planner(job.robot, job.tool, job.settings, strokes)
-    first = 1 if workers > 1 else len(holes)
-    yield from map(here, holes[:first])
-    if first >= len(holes):
-        return
-    pool = ProcessPoolExecutor(workers, get_context("spawn"), _begin, (here,))
-    try:
-        left = iter(holes[first:])
-        with (
-            _interrupts_held_back()
-        ):  # the workers are started here, and know nothing of Ctrl-C from their first moment
-            running = deque(_submitted(pool, left, workers * AHEAD))
-        while running:
-            yield running.popleft().result()
-            running.extend(_submitted(pool, left, 1))
-    except BrokenProcessPool:
-        raise ZerorevError("a worker process ended before its time (is there enough memory?)") from None
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
-def _submitted(pool: ProcessPoolExecutor, holes: Iterator[Hole], count: int) -> Iterator[Future[HolePlan]]:
-    return (pool.submit(_answer, hole) for hole in islice(holes, count))
-
-
 class _Planner:
     """What one hole of the job is answered by; goes to the workers as it is."""
 
@@ -138,38 +104,3 @@ class _Planner:
 
     def __call__(self, hole: Hole) -> HolePlan:
         return (plan if self.strokes == "asked" else plan_deepest)(self.robot, self.tool, hole, self.settings)
-
-
-_planner: _Planner  # of a worker
-
-
-def _begin(planner: _Planner) -> None:
-    """Make a worker ready; it ends with its parent, also where that is killed."""
-    global _planner
-    _planner = planner
-    logging.getLogger("zerorev").addHandler(logging.NullHandler())
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = parent_process()
-    assert parent is not None
-    connection.wait([parent.sentinel])
-    os._exit(1)
-
-
-def _answer(hole: Hole) -> HolePlan:
-    return _planner(hole)
-
-
-@contextmanager
-def _interrupts_held_back() -> Iterator[None]:
-    """Hold Ctrl-C back for a moment; a process started meanwhile never gets it."""
-    if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -28,6 +28,7 @@ __all__ = [
     "Prediction",
     "earlier_root",
     "first_order_root",
+    "narrowest",
     "predict",
     "second_order_root",
 ]
@@ -87,18 +88,26 @@ def predict(
     at = critical(robot, tool, hole, int(line.branch[best]), float(line.psi[best]), settings.min_rate)
     twists = (line.gentlest(1, hole.depth, gentle) - line.gentlest(-1, hole.depth, gentle)) * hole.depth
     return Prediction(
-        cheapest=_narrowest(robot, tool, hole, settings),
+        cheapest=narrowest(robot, tool, hole, settings),
         least_twist=float(np.nanmin(twists, initial=np.inf)),
         deepest=float(depths[best]),
         deepest_at=at if depths[best] > 0 else None,
     )
 
 
-def _narrowest(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> CriticalRates:
-    """The narrowest bracket of the target line."""
+def narrowest(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> CriticalRates:
+    """The narrowest bracket of the target line; its width is not finite where the target is out of reach.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: where to drill; its `branch`, if any, is the only one looked at.
+        settings: whose `min_rate` every joint keeps at the target, and whose `psi_bound` holds the spin.
+    """
     spins = target_spins(settings.psi_bound, FINE_SPINS)
     below, above = bracket(*joint_rates(robot, tool, hole, 0.0, spins), settings.min_rate)
-    width = np.where(_within(robot, hole, _angles(robot, tool, hole, spins)), above - below, np.inf)
+    with np.errstate(invalid="ignore"):  # out of reach, where both are infinite
+        width = np.where(_within(robot, hole, _angles(robot, tool, hole, spins)), above - below, np.inf)
     n, branch = np.unravel_index(np.nanargmin(width), width.shape)
     low, high = spins[max(int(n) - 1, 0)], spins[min(int(n) + 1, len(spins) - 1)]
 

@@ -556,13 +556,13 @@ def test_output_that_cannot_be_written_leaves_nothing(tmp_path: Path, monkeypatc
 
 def test_the_published_schemas_are_current(tmp_path: Path) -> None:
     files.write_schemas(tmp_path)
-    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json"):
+    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json", "map.schema.json"):
         committed = (ROOT / "docs/schemas" / name).read_text(encoding="utf-8")
         assert committed == (tmp_path / name).read_text(encoding="utf-8"), "run zerorev.model.files.write_schemas"
 
 
 def test_every_published_field_says_what_is_accepted() -> None:
-    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json"):
+    for name in ("job.schema.json", "plan.schema.json", "depth.schema.json", "map.schema.json"):
         schema = json.loads((ROOT / "docs/schemas" / name).read_text(encoding="utf-8"))
         for form in (schema, *schema["$defs"].values()):
             assert all(field.get("description") for field in form["properties"].values())

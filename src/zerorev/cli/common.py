@@ -12,7 +12,7 @@ from cyclopts import App, Parameter, Token
 from zerorev.errors import InputError, OutputError
 
 __all__ = [
-    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "Whole", "app", "need",
+    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "Whole", "app", "map_app", "need",
     "not_over", "numbers",
 ]  # fmt: skip
 
@@ -49,6 +49,9 @@ app = App(
     suppress_keyboard_interrupt=False,
     result_action="return_value",
 )
+
+map_app = App(name="map", default_parameter=Parameter(negative=(), show_default=False))
+app.command(map_app)
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 

@@ -14,6 +14,7 @@ from zerorev.errors import InputError
 from zerorev.model.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
+from zerorev.model.map_schema import MapFile
 from zerorev.model.output import write_text
 from zerorev.model.part import part_document
 from zerorev.model.plan import Plan
@@ -155,8 +156,8 @@ def write_plan(plan: Plan, path: str | Path) -> None:
 
 
 def write_schemas(folder: str | Path) -> None:
-    """Write the JSON Schemas of job, plan and depth files, job.schema.json and so on, into a folder."""
-    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile, "depth": DepthFile}
+    """Write the JSON Schemas of job, plan, depth and map files, job.schema.json and so on, into a folder."""
+    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile, "depth": DepthFile, "map": MapFile}
     for name, form in forms.items():
         schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"} | form.model_json_schema()
         write_text(Path(folder) / f"{name}.schema.json", json_text(schema))
@@ -176,7 +177,8 @@ def _job(document: Document, folder: Path, name: str, *, depth_needed: bool = Tr
             raise InputError(f"the id '{hole.id}' is used twice", where=where, accepted="ids that differ")
         with inside(where):
             holes[hole.id] = hole_from(hole, form.psi_reference, tool, T_base_part)
-    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name)
+    reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
+    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name, reference)
 
 
 def _hole_forms(form: JobFile, document: Document, folder: Path, depth_needed: bool) -> list[tuple[str, HoleForm]]:

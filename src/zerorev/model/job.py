@@ -144,6 +144,8 @@ class Job:
         settings: how.
         T_base_part: part frame, shape (4, 4), translation [m].
         name: of the job; names the program.
+        psi_reference: what the spins of all holes are counted from where the part is moved: one of
+            `zerorev.model.hole.REFERENCES`, or a vector in the part frame; None: their own `psi_zero` moves with it.
     """
 
     robot: Robot
@@ -152,6 +154,7 @@ class Job:
     settings: Settings = field(default_factory=Settings)
     T_base_part: Array = field(default_factory=lambda: np.eye(4))
     name: str = "job"
+    psi_reference: str | tuple[float, ...] | None = None
 
     def __post_init__(self) -> None:
         """Check that there are holes and that their ids differ."""

@@ -10,14 +10,17 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
-__all__ = ["Form", "FrameForm", "HoleForm", "JobFile", "RobotFile", "RobotForm", "SettingsForm", "ToolFile", "ToolForm"]
+__all__ = [
+    "Form", "FrameForm", "HoleForm", "JobFile", "Name", "NotNegative", "Positive", "RobotFile", "RobotForm",
+    "SettingsForm", "Three", "ToolFile", "ToolForm", "kind",
+]  # fmt: skip
 
 
 def _id_text(value: object) -> object:
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-def _kind(value: object) -> str | None:
+def kind(value: object) -> str | None:
     """The tag of a union's member; every tag starts with '<', so that messages can leave it out of a field's path."""
     tags: dict[type, str] = {str: "<text>", list: "<list>", dict: "<mapping>"}
     return tags.get(type(value))
@@ -175,7 +178,7 @@ class SettingsForm(Form):
     objective: Annotated[
         Annotated[Literal["travel", "margin", "plunge_rotation"], Tag("<text>")]
         | Annotated[WeightsForm, Tag("<mapping>")],
-        Discriminator(_kind),
+        Discriminator(kind),
     ] = Field(
         default="travel",
         description="travel (least joint travel), margin (greatest slowest motion) or plunge_rotation (least spin "
@@ -248,7 +251,7 @@ class JobFile(SettingsForm):
     format: Literal["zerorev.job/1"] = Field(default="zerorev.job/1", description="zerorev.job/1")
     name: Name | None = Field(default=None, description="text: names the program; left out, it is the file's name")
     robot: Name = Field(description="text: a name that ships with zerorev, or the path of a robot file")
-    tool: Annotated[Annotated[Name, Tag("<text>")] | Annotated[ToolForm, Tag("<mapping>")], Discriminator(_kind)] = (
+    tool: Annotated[Annotated[Name, Tag("<text>")] | Annotated[ToolForm, Tag("<mapping>")], Discriminator(kind)] = (
         Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
     )
     part_frame: FrameForm = Field(
@@ -257,7 +260,7 @@ class JobFile(SettingsForm):
     psi_reference: Annotated[
         Annotated[Literal["base_y", "nearest_base", "part_x", "part_y"], Tag("<text>")]
         | Annotated[Three, Tag("<list>")],
-        Discriminator(_kind),
+        Discriminator(kind),
     ] = Field(
         default="base_y",
         description="base_y, nearest_base, part_x, part_y, or three numbers (a vector in the part frame): "
@@ -265,7 +268,7 @@ class JobFile(SettingsForm):
     )
     holes: Annotated[
         Annotated[list[HoleForm], Field(min_length=1), Tag("<list>")] | Annotated[Name, Tag("<text>")],
-        Discriminator(_kind),
+        Discriminator(kind),
     ] = Field(
         description="a list of one hole or more, or the path of a CSV file with the columns "
         "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"

@@ -19,7 +19,16 @@ import yaml
 
 from zerorev.errors import InputError
 
-__all__ = ["Document", "csv_rows", "json_document", "json_pieces", "json_text", "read_text", "yaml_document"]
+__all__ = [
+    "Document",
+    "csv_rows",
+    "json_document",
+    "json_pieces",
+    "json_text",
+    "read_text",
+    "yaml_document",
+    "yaml_text",
+]
 
 MAX_BYTES = 64 * 2**20
 LINE_WIDTH = 160
@@ -167,6 +176,23 @@ def _plain(node: yaml.Node, path: FieldPath, lines: dict[FieldPath, int]) -> Any
 
 def _refuse(problem: str, node: yaml.Node) -> NoReturn:
     raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Puts into quotes whatever `_Loader` would not read as text again."""
+
+    yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
+
+    def ignore_aliases(self, data: Any) -> bool:
+        """Write everything out."""
+        return True
+
+
+def yaml_text(data: Any) -> str:
+    """Plain data as YAML that `yaml_document` reads as the same; short lists and mappings stand on one line."""
+    return str(
+        yaml.dump(data, Dumper=_Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=LINE_WIDTH)
+    )
 
 
 # --- JSON -------------------------------------------------------------------------------------------------------------

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import html
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.report.figures import style
+from zerorev.report.figures.page import embedded, html_page
 from zerorev.report.figures.parameter_map import MOST, heading, reversal_names
 from zerorev.report.parameter_map import TURNS
 
@@ -21,38 +21,16 @@ __all__ = ["map_page"]
 MOST_SPINS = 101  # an axis, on the page: more are thinned out, so that it stays some 12 MB
 MOST_POINTS = 30_000  # of the set in 3D
 EYE = {"eye": {"x": 1.1, "y": -1.7, "z": 0.75}}
-PAGE = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>{title}</title>
-<style>body {{ font-family: sans-serif; margin: 1.5em auto; max-width: 1180px; color: #1a1a1a }} p {{ color: #5c5c5c }}
-</style>
-<script>{plotly}</script></head><body>
-<h1>{title}</h1><p>{subtitle}</p>
-<h2>Slices at a spin at the target</h2><p>Move the slider: left the objective (thesis eq. 4.7), right the reversals.</p>
-{slices}
-<h2>Where no joint reverses</h2><p>Drag to turn it.</p>
-{volume}
-</body></html>
-"""
 
 
 def map_page(found: Dataset) -> str:
     """A page of HTML that needs no network: slices of a whole map with a slider, and its zero-reversal set in 3D."""
-    from plotly.offline import get_plotlyjs
-
-    title = f"Parameter map, {TURNS[found.attrs['turns']]}"
-    return PAGE.format(
-        title=title, subtitle=html.escape(heading(found)), plotly=get_plotlyjs(), slices=_embedded(_slices(found)),
-        volume=_embedded(_volume(found)),
+    sections = (
+        ("Slices at a spin at the target", "Move the slider: left the objective (thesis eq. 4.7), right the reversals.",
+         embedded(_slices(found))),
+        ("Where no joint reverses", "Drag to turn it.", embedded(_volume(found))),
     )  # fmt: skip
-
-
-def _embedded(figure: Figure) -> str:
-    """A figure as part of a page."""
-    from plotly.io import to_html
-
-    text = to_html(figure, include_plotlyjs=False, full_html=False, auto_play=False)
-    # slashes are escaped so that no tag can end early; none can where < is escaped, and cells of -1 are all slashes
-    return str(text).replace("\\u002f", "/")
+    return html_page(f"Parameter map, {TURNS[found.attrs['turns']]}", heading(found), sections)
 
 
 def _slices(found: Dataset) -> Figure:

@@ -24,6 +24,11 @@ __all__ = [
     "MODIFIED_DH",
     "POSITIONS",
     "STANDARD_DH",
+    "SYMMETRY_MM",
+    "TABLE_5",
+    "TABLE_5_X_MM",
+    "TABLE_5_Y_MM",
+    "TABLE_5_Z_MM",
     "TOOL_AS_NEEDED",
     "TOOL_AS_PRINTED",
     "TRIALS",
@@ -188,6 +193,23 @@ DEEPEST = (
 )
 BISECTION_RANGE_MM, BISECTION_STEPS, BISECTION_RESOLUTION_MM = (0.0, 200.0), 7.64, 1.0  # eq. 4.9, 4.10
 DECREMENT_MM = 5.0  # sec. 4.6, first map
+
+# Table 5: deepest stroke with zero reversals [mm] on the plane X = 500 mm, by steps of 5 mm; a row a Z, a column a Y
+TABLE_5_X_MM = 500.0
+TABLE_5_Y_MM = (400, 300, 200, 100, 0, -100, -200, -300, -400)
+TABLE_5_Z_MM = (1200, 1100, 1000, 900, 800, 700, 600, 500, 400)
+TABLE_5 = (
+    (0, 0, 0, 0, 0, 0, 0, 0, 0),
+    (0, 0, 0, 0, 15, 0, 0, 0, 0),
+    (0, 40, 70, 60, 50, 60, 75, 40, 0),
+    (75, 120, 85, 65, 45, 70, 95, 120, 70),
+    (105, 90, 80, 75, 65, 85, 95, 100, 105),
+    (80, 110, 100, 90, 70, 95, 110, 110, 95),
+    (60, 45, 35, 25, 30, 30, 30, 40, 70),
+    (40, 25, 20, 25, 20, 10, 20, 30, 40),
+    (40, 50, 35, 15, 0, 20, 35, 45, 40),
+)
+SYMMETRY_MM = 10.0  # sec. 4.6: the results of Table 5 "are symmetrical about Y = 0 within ±10 mm"
 
 # sec. 4.7: these spins have so many reversals on the one branch that can run them, and their mirror none that can
 MAP_EXAMPLE_RAD, MAP_EXAMPLE_REVERSALS = (-1.0, 0.0, 1.0), 3

@@ -1,0 +1,92 @@
+"""`zerorev map`: one question, asked of many targets and directions."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from zerorev.cli.common import FINE, map_app, need
+from zerorev.errors import InputError
+from zerorev.report import terminal
+
+if TYPE_CHECKING:
+    from zerorev.maps.run import Runner
+
+__all__ = ["run"]
+
+
+@map_app.default
+def run(
+    map: Path,
+    /,
+    *,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> int:
+    """Map where a robot can drill: the deepest stroke, or another quantity, over targets and directions.
+
+    What is finished is kept in the folder of the map at any moment; after an interruption the same command goes on from
+    there and ends with the same bytes. On a finished map it looks for damage, and mends it.
+
+    Args:
+        map: The map file (YAML): robot, tool, targets, directions, quantity (docs/maps.md).
+        output: Where to write the map: a folder of zarr.
+        workers: Processes to run it on; by default all cores where it is worth it. The map is the same.
+        scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
+    """
+    need("xarray", "xarray", "map", "maps")
+    need("zarr", "zarr", "map", "maps")
+    if scheduler is not None:
+        need("distributed", "dask.distributed", "--scheduler", "cluster")
+        if workers is not None:
+            raise InputError(
+                "is for this machine, and --scheduler for another", where="--workers", accepted="one of them"
+            )
+    from zerorev.model.map_file import read_map_file
+    from zerorev.model.output import check_folder
+
+    task = read_map_file(map)
+    if task.cells_in_base:
+        terminal.note(
+            f"{task.cells_in_base:,} of {task.cells:,} cells lie inside the robot's base and get no answer (accepted:"
+            f" {task.outside})"
+        )
+    from zerorev.maps.run import local, run_map
+    from zerorev.report.map_run import summary_lines
+
+    if scheduler is None:
+        place: AbstractContextManager[Runner] = nullcontext(local(workers))
+    else:
+        from zerorev.maps.cluster import cluster
+
+        check_folder(output)
+        place = cluster(scheduler)
+    begun = False
+    try:
+        with place as runner, terminal.progress("mapping", task.cells, each="cell") as progress:
+
+            def tell(done: int, of: int) -> None:
+                nonlocal begun
+                if not begun and 0 < done < of:
+                    terminal.note(f"going on after {done:,} of {of:,} cells in {output}")
+                begun = True
+                if progress:
+                    progress(done, of)
+
+            ran = run_map(task, output, runner, tell)
+    except KeyboardInterrupt:
+        if not begun:
+            raise
+        raise KeyboardInterrupt(
+            f"interrupted; what is finished is kept in {output}; the same command goes on from there"
+        ) from None
+    if ran.before == ran.chunks:
+        terminal.note(f"the map in {output} was finished, and is whole")
+    for line in summary_lines(output):
+        terminal.say(line)
+    terminal.say(f"map written to {output}")
+    return FINE

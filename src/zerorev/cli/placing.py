@@ -1,0 +1,249 @@
+"""`zerorev place` and `zerorev share`: where a part should stand, and which of several robots drills which hole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, need, not_over
+from zerorev.errors import InputError
+from zerorev.report import terminal
+
+if TYPE_CHECKING:
+    from zerorev.model.job import Job
+    from zerorev.placement.freedom import Freedom
+    from zerorev.placement.search import Placement
+
+__all__ = ["place", "share"]
+
+EACH = {"coarse grid": "place", "refining": "step", "room": "round", "map": "place"}
+
+
+@app.command
+def place(
+    job: Path,
+    /,
+    *,
+    x_mm: str = "0",
+    y_mm: str = "0",
+    z_mm: str = "0",
+    turn_deg: str = "0",
+    grid: Whole = 7,
+    cells: Whole = 13,
+    output: Output = None,
+    write_job: Path | None = None,
+    figures: Path | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
+    """Find where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
+
+    The part is moved from where the job has it, in the robot's base frame, as far as the ranges allow. What a place is
+    worth is its least margin: the deepest stroke of the worst hole less the depth that it needs. After Ctrl-C the best
+    place so far is shown and written.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes, part_frame.
+        x_mm: Shift along X of the base frame, START:STOP, e.g. --x-mm=-100:100.
+        y_mm: Likewise along Y.
+        z_mm: Likewise along Z.
+        turn_deg: Turn about the vertical through the part frame's origin, START:STOP, counter-clockwise from above.
+        grid: Places of the coarse grid along each axis that has any freedom.
+        cells: Of the map along each axis; 0 for none. It is made where it is written or drawn.
+        output: Where to write the answer (JSON). Without it the answer is only shown.
+        write_job: Where to write the job with its part at the best place (YAML), if every hole is drilled there.
+        figures: Folder for the picture of the map (PNG); it is made if its parent exists.
+        workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
+        json: Print the answer as JSON on standard output, and nothing else there.
+    """
+    from zerorev.jobs import workers_for
+    from zerorev.model.files import read_job
+    from zerorev.model.moved_job import check_new_job
+    from zerorev.model.output import check_file, check_folder, write_text
+    from zerorev.model.text import json_text
+
+    if output is not None:
+        check_file(output)
+        not_over(output, job)
+    if figures is not None:
+        need("matplotlib", "matplotlib", "--figures", "figures")
+        check_folder(figures)
+    ranges = {"--x-mm": x_mm, "--y-mm": y_mm, "--z-mm": z_mm, "--turn-deg": turn_deg}
+    ends = [_range(text, option) for option, text in ranges.items()]
+    wanted = read_job(job)
+    if write_job is not None:
+        check_new_job(write_job, job)
+
+    from zerorev.placement.freedom import Freedom
+    from zerorev.report import placement as shown
+
+    x, y, z = ((low / 1e3, high / 1e3) for low, high in ends[:3])
+    freedom = Freedom(x, y, z, (math.radians(ends[3][0]), math.radians(ends[3][1])))
+    count = workers_for(len(wanted.holes) * max(grid, 1) ** len(freedom.granted), workers)
+    found, stopped = _searched(wanted, freedom, grid, cells if output or figures or json else 0, count)
+    data = shown.placement_data(wanted, freedom, found)
+    written = []
+    if output is not None:
+        write_text(output, json_text(data))
+        written.append(f"answer written to {output}")
+    if figures is not None and found.slices:
+        written.append(_drawn(wanted, found, figures))
+    if write_job is not None and found.least >= 0:
+        written.append(_job_written(wanted, found, write_job, job))
+    if json:
+        terminal.print_json(data)
+    else:
+        terminal.out().print(shown.placement_table(wanted, found))
+        terminal.print_lines(shown.placement_lines(wanted, freedom, found))
+        for line in written:
+            terminal.say(line)
+    if write_job is not None and found.least < 0:
+        terminal.note("no job written: no place that was looked at drills every hole")
+    if stopped:
+        raise KeyboardInterrupt(f"interrupted; the best place so far is {'written' if output else 'shown'}")
+    return FINE if found.least >= 0 else FOUND
+
+
+def _searched(job: Job, freedom: Freedom, grid: int, cells: int, workers: int) -> tuple[Placement, bool]:
+    """The best place, and whether Ctrl-C stopped the search for a better one."""
+    from zerorev.placement.search import placements
+
+    known: Placement | None = None
+    try:
+        with _phases() as progress:
+            for better in placements(job, freedom, grid=grid, cells=cells, workers=workers, progress=progress):
+                known = better
+    except KeyboardInterrupt:
+        if known is None:
+            raise
+        return known, True
+    assert known is not None
+    return known, False
+
+
+def _drawn(job: Job, found: Placement, folder: Path) -> str:
+    from zerorev.model.output import make_folder, write_bytes
+    from zerorev.report.figures.placement import placement_map
+    from zerorev.report.figures.style import png
+
+    make_folder(folder)
+    write_bytes(folder / "placement.png", png(placement_map(job, found)))
+    return f"figure written to {folder}"
+
+
+def _job_written(job: Job, found: Placement, target: Path, source: Path) -> str:
+    from zerorev.model.moved_job import write_job
+    from zerorev.placement.freedom import frame_at
+    from zerorev.report.placement import place_words
+
+    note = f"{source.name} with its part moved by zerorev place: {place_words(found.place)}"
+    write_job(target, source, T_base_part=frame_at(job.T_base_part, found.place), note=note)
+    return f"job written to {target}"
+
+
+@app.command
+def share(
+    jobs: list[Path],
+    /,
+    *,
+    balance: bool = False,
+    output: Output = None,
+    write_jobs: Path | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
+    """Share the holes of a part among robots, each hole to the robot with the greatest margin on it.
+
+    Each job names a robot, and by its part_frame where the part stands as seen from that robot. A hole of the same id
+    is the same hole of the part.
+
+    Args:
+        jobs: Two job files (YAML) or more, one a robot.
+        balance: No robot takes more than an even share of the holes, as far as they can be drilled so.
+        output: Where to write the answer (JSON). Without it the answer is only shown.
+        write_jobs: Folder for one job file a robot, with the holes that it takes; it is made if its parent exists.
+        workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
+        json: Print the answer as JSON on standard output, and nothing else there.
+    """
+    from zerorev.jobs import workers_for
+    from zerorev.model.files import read_job
+    from zerorev.model.moved_job import check_new_job, write_job
+    from zerorev.model.output import check_file, check_folder, make_folder, write_text
+    from zerorev.model.text import json_text
+
+    if output is not None:
+        check_file(output)
+        for job in jobs:
+            not_over(output, job)
+    targets = [] if write_jobs is None else [write_jobs / job.name for job in jobs]
+    if write_jobs is not None:
+        check_folder(write_jobs)
+        if len(set(targets)) < len(targets):
+            raise InputError("two jobs have the same file name", where="--write-jobs", accepted="names that differ")
+        for target, job in zip(targets, jobs, strict=True):
+            if target.exists():
+                check_new_job(target, job)
+    wanted = [read_job(job) for job in jobs]
+
+    from zerorev import sharing
+    from zerorev.report import placement as shown
+
+    strokes = sum(len(job.holes) for job in wanted)
+    with terminal.progress("deepest strokes", strokes, "stroke") as progress:
+        shares = sharing.share(wanted, balance=balance, workers=workers_for(strokes, workers), progress=progress)
+    data = shown.share_data(wanted, shares)
+    written = []
+    if output is not None:
+        write_text(output, json_text(data))
+        written.append(f"answer written to {output}")
+    if write_jobs is not None:
+        make_folder(write_jobs)
+        for r, (target, job) in enumerate(zip(targets, jobs, strict=True)):
+            ids = {name for name, taker in zip(shares.ids, shares.taken_by, strict=True) if taker == r}
+            if ids:
+                write_job(target, job, ids=ids, note=f"{job.name}: the holes that zerorev share gives to this robot")
+                written.append(f"job of {len(ids)} holes written to {target}")
+    if json:
+        terminal.print_json(data)
+    else:
+        terminal.out().print(shown.share_table(wanted, shares))
+        terminal.print_lines(shown.share_lines(wanted, shares))
+        for line in written:
+            terminal.say(line)
+    return FINE if (shares.taken_by >= 0).all() else FOUND
+
+
+def _range(text: str, option: str) -> tuple[float, float]:
+    """START:STOP, or one number for no freedom."""
+    accepted = "START:STOP, two numbers of which the first is not above the second; e.g. -100:100"
+    try:
+        ends = [float(part) for part in text.split(":")]
+    except ValueError:
+        ends = []
+    if len(ends) not in (1, 2) or not all(map(math.isfinite, ends)):
+        raise InputError(f"'{text}' is no range", where=option, accepted=accepted)
+    if ends[0] > ends[-1]:
+        raise InputError(f"'{text}' is empty: it starts above its stop", where=option, accepted=accepted)
+    if option == "--turn-deg" and ends[-1] - ends[0] > 360:
+        raise InputError(f"'{text}' is more than a full turn", where=option, accepted="360 degrees at most")
+    return ends[0], ends[-1]
+
+
+@contextmanager
+def _phases() -> Iterator[Callable[[str, int, int], None]]:
+    """Progress of one phase after the other, each with its own bar."""
+    with ExitStack() as bars:
+        now, bar = "", None
+
+        def tell(phase: str, done: int, total: int) -> None:
+            nonlocal now, bar
+            if phase != now:
+                bars.pop_all().close()
+                now, bar = phase, bars.enter_context(terminal.progress(phase, total, EACH[phase]))
+            if bar:
+                bar(done, total)
+
+        yield tell

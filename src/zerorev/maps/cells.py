@@ -1,0 +1,248 @@
+"""The cells of a workspace map: the question, put to one target and direction after another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zerorev.depth import deepest_stroke
+from zerorev.evaluation import evaluate, meets_threshold
+from zerorev.kinematics import inverse, tcp_pose
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.map_task import Question
+from zerorev.model.plan import Score
+from zerorev.model.profile import Profile
+from zerorev.motion import turns_within
+from zerorev.prediction import narrowest
+from zerorev.search.exact import search
+from zerorev.search.free import SEGMENTS, search_free
+from zerorev.search.straight import target_spins
+from zerorev.search.thesis_stroke import thesis_stroke
+
+__all__ = ["KINDS", "KNOTS", "STATUS", "Block", "Kind", "answer", "columns_of"]
+
+SPINS = 240  # at the target in one turn, by which reach is judged
+KNOTS = 2 * SEGMENTS[-1] + 1  # breakpoints of a motion on free legs, at most
+
+STATUS = ("answered", "none", "joint_limits", "out_of_reach", "robot_base")
+"""What became of a cell, by its number: answered; no such motion or stroke, though the target is reached; reached
+outside the joint limits or the bound on the spin alone; out of reach; inside the robot's base."""
+ANSWERED, NONE, LIMITS, OUT_OF_REACH, IN_BASE = range(5)
+
+Values = dict[str, npt.NDArray[np.generic]]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A quantity as a map holds it.
+
+    Attributes:
+        variable: its name in the dataset.
+        unit: of it.
+        title: in words.
+        cells: of a chunk, at most: some seconds of work.
+        solve: finds it.
+    """
+
+    variable: str
+    unit: str
+    title: str
+    cells: int
+    solve: Callable[[Question, Hole, int], Found | None]
+
+
+class Found(NamedTuple):
+    """The answer of a cell.
+
+    Attributes:
+        value: in the unit of the quantity.
+        branch: 0..7.
+        profile: the motion; or None, where there is but a spin at the target.
+        psi_target: spin there [rad].
+    """
+
+    value: float
+    branch: int
+    profile: Profile | None
+    psi_target: float
+
+
+class Block(NamedTuple):
+    """Cells that are answered together; what is sent to a worker.
+
+    Attributes:
+        number: of the chunk.
+        cells: numbers of the cells, of which the seeds of a swarm are made, shape (n,).
+        target: [m], shape (n, 3).
+        direction: unit vectors, shape (n, 3).
+        in_base: which targets lie inside the robot's base, shape (n,).
+    """
+
+    number: int
+    cells: npt.NDArray[np.int64]
+    target: Array
+    direction: Array
+    in_base: npt.NDArray[np.bool_]
+
+
+def columns_of(question: Question) -> dict[str, tuple[str, str, str]]:
+    """The variables of a map: data type, unit and title of each by its name; -1 or NaN where there is nothing."""
+    kind = KINDS[question.quantity]
+    whole = {
+        "status": "what became of the cell; -1: not yet looked at",
+        "branch": "inverse-kinematics branch; -1: none",
+    }
+    columns = {kind.variable: ("i1" if kind.unit == "1" else "f8", kind.unit, kind.title)}
+    columns |= {name: ("i1", "1", title) for name, title in whole.items()}
+    columns |= {f"psi_{place}_deg": ("f8", "deg", f"spin at the {place}") for place in ("start", "target", "end")}
+    if question.settings.legs == "free":
+        columns |= {"standoff_mm": ("f8", "mm", "stand-off at the breakpoints of the motion"),
+                    "psi_deg": ("f8", "deg", "spin at the breakpoints of the motion")}  # fmt: skip
+    return columns
+
+
+def answer(question: Question, block: Block) -> Values:
+    """The variables of a block of cells, each with the cells along its first axis.
+
+    Args:
+        question: what is asked.
+        block: of which cells.
+    """
+    values: Values = {}
+    for name, (kind, _, _) in columns_of(question).items():
+        shape = (len(block.cells), KNOTS) if name in ("standoff_mm", "psi_deg") else len(block.cells)
+        values[name] = np.full(shape, -1 if kind == "i1" else np.nan, dtype=kind)
+    for n, cell in enumerate(block.cells):
+        if block.in_base[n]:
+            values["status"][n] = IN_BASE
+            continue
+        hole = question.hole(block.target[n], block.direction[n])
+        found = KINDS[question.quantity].solve(question, hole, question.seed + int(cell))
+        if found is None:
+            values["status"][n] = _why_none(question, hole)
+        else:
+            _write(values, n, KINDS[question.quantity].variable, found)
+    return values
+
+
+def _write(values: Values, n: int, variable: str, found: Found) -> None:
+    values[variable][n] = found.value
+    values["status"][n], values["branch"][n] = ANSWERED, found.branch
+    values["psi_target_deg"][n] = np.rad2deg(found.psi_target)
+    if found.profile is not None:
+        values["psi_start_deg"][n], values["psi_end_deg"][n] = np.rad2deg(found.profile.psi[[0, -1]])
+        if "psi_deg" in values:
+            knots = len(found.profile.psi)
+            values["standoff_mm"][n, :knots] = found.profile.standoff * 1e3
+            values["psi_deg"][n, :knots] = np.rad2deg(found.profile.psi)
+
+
+def _why_none(question: Question, hole: Hole) -> int:
+    """Whether the target is reached at all, and within the joint limits."""
+    robot, tool = question.robot, question.tool
+
+    def angles(psi_bound: float | None) -> Array:
+        spins = target_spins(psi_bound, SPINS)
+        return inverse(robot, tcp_pose(hole, 0.0, spins) @ np.linalg.inv(tool.T_flange_tcp))
+
+    if np.isnan(angles(None)).all():
+        return OUT_OF_REACH
+    there = angles(question.settings.psi_bound)
+    _, fits = turns_within(there, there, robot.limits)
+    return NONE if (fits.all(axis=-1) & ~np.isnan(there).any(axis=-1)).any() else LIMITS
+
+
+# --- the quantities ---------------------------------------------------------------------------------------------------
+
+
+def _deepest(question: Question, hole: Hole, _: int) -> Found | None:
+    found = deepest_stroke(question.robot, question.tool, hole, question.settings)
+    return _stroke(found.depth, found.profile, found.branch)
+
+
+def _thesis_bisection(question: Question, hole: Hole, seed: int) -> Found | None:
+    found = thesis_stroke(question.robot, question.tool, hole, question.settings, "bisection", seed)
+    return _stroke(found.depth, found.profile, found.branch)
+
+
+def _thesis_stepping(question: Question, hole: Hole, seed: int) -> Found | None:
+    found = thesis_stroke(question.robot, question.tool, hole, question.settings, "stepping", seed)
+    return _stroke(found.depth, found.profile, found.branch)
+
+
+def _stroke(depth: float, profile: Profile | None, branch: int | None) -> Found | None:
+    if profile is None or branch is None:
+        return None
+    return Found(depth * 1e3, branch, profile, float(profile.psi[profile.corner]))
+
+
+def _fewest_reversals(question: Question, hole: Hole, _: int) -> Found | None:
+    best = _best_motion(question, hole)
+    return None if best is None else _motion(float(best[2].reversals), best)
+
+
+def _least_travel(question: Question, hole: Hole, _: int) -> Found | None:
+    best = _best_motion(question, hole)
+    if best is None or best[2].reversals > 0 or not meets_threshold(best[2], question.settings):
+        return None
+    return _motion(float(np.rad2deg(best[2].travel)), best)
+
+
+def _greatest_margin(question: Question, hole: Hole, _: int) -> Found | None:
+    margin = replace(question, settings=replace(question.settings, objective="margin"))
+    best = _best_motion(margin, hole)
+    if best is None or best[2].reversals > 0:
+        return None
+    return _motion(float(np.rad2deg(best[2].min_rate.min())) / 1e3, best)
+
+
+def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
+    cheapest = narrowest(question.robot, question.tool, hole, question.settings)
+    if not np.isfinite(cheapest.width):
+        return None
+    return Found(float(np.rad2deg(cheapest.spread)) / 1e3, cheapest.branch, None, cheapest.psi)
+
+
+_Best = tuple[Profile, int, Score]
+
+
+def _best_motion(question: Question, hole: Hole) -> _Best | None:
+    """The best motion at the depth: fewest reversals, then the motion threshold, then the objective."""
+    robot, tool, settings = question.robot, question.tool, question.settings
+    found = search(robot, tool, hole, settings)
+    motions = [] if found is None else [(found.profile, found.branch)]
+    free = search_free(robot, tool, hole, settings) if settings.legs == "free" else None
+    if free is not None:
+        motions = [free, *(motion for motion in motions if np.abs(motion[0].twist_rate).max() <= settings.max_twist)]
+    scored = ((*motion, evaluate(robot, tool, hole, *motion, settings).score) for motion in motions)
+    known = [(profile, branch, score) for profile, branch, score in scored if score is not None]
+
+    def rank(best: _Best) -> tuple[int, bool, float]:
+        score = best[2]
+        value = score.travel if settings.objective == "travel" else -float(score.min_rate.min())
+        return score.reversals, not meets_threshold(score, settings), value
+
+    return min(known, key=rank, default=None)
+
+
+def _motion(value: float, best: _Best) -> Found:
+    profile, branch, _ = best
+    return Found(value, branch, profile, float(profile.psi[profile.corner]))
+
+
+KINDS: dict[str, Kind] = {
+    "deepest": Kind("deepest_mm", "mm", "deepest stroke with zero reversals", 256, _deepest),
+    "fewest_reversals": Kind("reversals", "1", "fewest reversals; -1: none", 256, _fewest_reversals),
+    "least_travel": Kind("travel_deg", "deg", "least travel of all joints with zero reversals", 256, _least_travel),
+    "greatest_margin": Kind(
+        "margin_deg_per_mm", "deg/mm", "greatest margin (slowest joint) with zero reversals", 256, _greatest_margin
+    ),
+    "twist_spread": Kind("twist_spread_deg_per_mm", "deg/mm", "least twist spread at the target", 256, _twist_spread),
+    "thesis_bisection": Kind("deepest_mm", "mm", "deepest stroke by a swarm and bisection", 4, _thesis_bisection),
+    "thesis_stepping": Kind("deepest_mm", "mm", "deepest stroke by a swarm and steps of 5 mm", 4, _thesis_stepping),
+}

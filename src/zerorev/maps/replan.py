@@ -1,0 +1,120 @@
+"""From a cell of a workspace map back to a hole that can be planned, checked, exported or viewed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._units import m, rad, rad_per_m
+from zerorev.model.conversion import robot_from, tool_from
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job, Settings
+from zerorev.model.map_task import Question
+from zerorev.model.profile import Profile
+from zerorev.model.schema import RobotForm, ToolForm
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["hole_of", "job_of", "question_of"]
+
+
+def question_of(found: Dataset) -> Question:
+    """What a map asked, from its attributes.
+
+    Args:
+        found: a workspace map.
+
+    Raises:
+        InputError: the attributes are not those of a workspace map.
+    """
+    attributes = found.attrs
+    try:
+        robot, tool, settings = (dict(attributes[name]) for name in ("robot", "tool", "settings"))
+        reference, depth_mm, bound = attributes["psi_reference"], attributes.get("depth_mm"), settings["psi_bound_deg"]
+        for data in (robot, tool):
+            data.pop("sha256")
+        return Question(
+            robot_from(RobotForm.model_validate(robot)),
+            tool_from(ToolForm.model_validate(tool)),
+            attributes["quantity"],
+            Settings(
+                min_rate=float(rad_per_m(settings["min_rate_deg_per_mm"])),
+                psi_bound=None if bound is None else float(rad(bound)),
+                legs=settings["legs"],
+                max_twist=float(rad_per_m(settings["max_twist_deg_per_mm"])),
+            ),
+            reference if isinstance(reference, str) else tuple(reference),
+            None if depth_mm is None else float(m(depth_mm)),
+            attributes.get("seed", 0),
+        )
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"has attributes that cannot be used: {error}", accepted="a map of zerorev map") from None
+
+
+def hole_of(found: Dataset, **index: int) -> Hole:
+    """The hole of a cell, with the depth, the branch and the motion that the map states.
+
+    Args:
+        found: a workspace map.
+        index: the cell's place along each dimension that is longer than one, e.g. x=0, y=3, z=2, direction=0.
+
+    Returns:
+        a hole that `plan` evaluates as it stands. Where there is no motion (a twist spread, or a cell without an
+        answer), it has none, and a nominal depth where the map has none.
+
+    Raises:
+        InputError: no such cell.
+    """
+    return _hole(question_of(found), found, index)
+
+
+def job_of(found: Dataset, cells: list[dict[str, int]]) -> Job:
+    """A job of the holes of some cells, ready for `plan_job`.
+
+    Args:
+        found: a workspace map.
+        cells: their places, as `hole_of` has them.
+
+    Raises:
+        InputError: no such cell, or none at all.
+    """
+    question = question_of(found)
+    holes = tuple(_hole(question, found, index) for index in cells)
+    # the motion ends at the stroke that the map states, so the corner is where it was looked for
+    return Job(question.robot, question.tool, holes, question.settings, name="map")
+
+
+def _hole(question: Question, found: Dataset, index: dict[str, int]) -> Hole:
+    full = {str(name): index.get(str(name), 0) for name in found.sizes if name != "breakpoint"}
+    lacking = [name for name in full if name not in index and found.sizes[name] > 1]
+    unknown = [name for name in index if name not in full]
+    beyond = [name for name, at in full.items() if not -found.sizes[name] <= at < found.sizes[name]]
+    if lacking or unknown or beyond:
+        accepted = ", ".join(f"{name} below {found.sizes[name]}" for name in full)
+        raise InputError(f"no cell {index}", where="cell", accepted=accepted)
+    cell = found.isel(full)
+    target, direction = (
+        np.array([float(cell[name]) for name in names])
+        for names in (("x_mm", "y_mm", "z_mm"), ("direction_x", "direction_y", "direction_z"))
+    )
+    name = "cell " + " ".join(f"{key}{at}" for key, at in full.items())
+    profile, branch = _profile(cell, question), int(cell["branch"])
+    depth = None if profile is None else float(profile.standoff[0])
+    hole = question.hole(m(target), direction, name, depth)
+    return replace(hole, profile=profile, branch=branch if branch >= 0 else None)
+
+
+def _profile(cell: Any, question: Question) -> Profile | None:
+    spins = np.array([float(cell[f"psi_{place}_deg"]) for place in ("start", "target", "end")])
+    if np.isnan(spins).any():
+        return None
+    if "psi_deg" in cell:
+        known = ~np.isnan(cell["psi_deg"].values)
+        return Profile(m(cell["standoff_mm"].values[known]), rad(cell["psi_deg"].values[known]))
+    depth = float(m(cell["deepest_mm"])) if "deepest_mm" in cell else question.depth
+    assert depth is not None
+    return Profile.straight(depth, *rad(spins).tolist())

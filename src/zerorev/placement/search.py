@@ -1,0 +1,177 @@
+"""Where a part should stand: a coarse grid over the freedom, its best places bettered, and the room about the best.
+
+What a place is worth is its least margin: how much deeper than needed its worst hole could be drilled without a
+reversal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array
+from zerorev.model.job import Job
+from zerorev.placement.freedom import Freedom
+from zerorev.placement.margins import Asked, Margins, least
+from zerorev.placement.refine import bettered
+from zerorev.placement.room import Slice, room, slices
+from zerorev.workers import Workers
+
+__all__ = ["Placement", "place", "placements"]
+
+KEPT = 8  # the best places of the grid, known in full
+STARTS = 3  # those of them from which it goes on
+BATCH = 32  # places that are asked about with the same bar to clear
+
+Progress = Callable[[str, int, int], None]
+_Known = tuple["Placement", list[tuple[Array, Array]]]
+
+
+@dataclass(frozen=True)
+class Placement:
+    """Where a part should stand.
+
+    Attributes:
+        place: shift along X, Y, Z of the base frame [m] and turn about the vertical [rad], shape (4,).
+        margins: how much deeper than needed each hole could be drilled there [m], shape (H,).
+        as_it_stands: the same where the job has the part.
+        grid: values of the coarse grid along each axis [m or rad], four of them.
+        found: least margin of its places [m], shape (X, Y, Z, T); NaN: no better than others, so not known in full.
+        room: how far the part may be moved from the best place along each axis, the others as they are, before some
+            hole is too shallow [m or rad], shape (4, 2), 0 or less and 0 or more; None: not looked at, or too shallow.
+        slices: the least margin over the granted axes, two at a time, through the best place.
+        strokes: how many deepest strokes were found.
+        finished: whether nothing is left to be looked at.
+    """
+
+    place: Array
+    margins: Array
+    as_it_stands: Array
+    grid: tuple[Array, ...]
+    found: Array
+    room: Array | None = None
+    slices: tuple[Slice, ...] = ()
+    strokes: int = 0
+    finished: bool = False
+
+    @property
+    def least(self) -> float:
+        """The margin of the worst hole [m]; every hole is drilled without a reversal where it is 0 or more."""
+        return least(self.margins)
+
+    @property
+    def worst(self) -> int:
+        """Index of the worst hole."""
+        return int(self.margins.argmin())
+
+
+def place(
+    job: Job, freedom: Freedom, *, grid: int = 7, cells: int = 0, workers: int = 1, progress: Progress | None = None
+) -> Placement:
+    """Where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
+
+    Args:
+        job: robot, tool, holes with their depths, settings, and where the part stands now.
+        freedom: how far it may be moved.
+        grid: places of the coarse grid along each granted axis; what is narrower than its meshes may be overlooked.
+        cells: of each slice, along each axis; 0: no slices.
+        workers: processes to run it on; the answer is the same.
+        progress: told (what is done, how much of it is done, how much it is in all).
+
+    Raises:
+        InputError: a grid of fewer than two places, a hole with a given motion.
+    """
+    *_, last = placements(job, freedom, grid=grid, cells=cells, workers=workers, progress=progress)
+    return last
+
+
+def placements(
+    job: Job, freedom: Freedom, *, grid: int = 7, cells: int = 0, workers: int = 1, progress: Progress | None = None
+) -> Iterator[Placement]:
+    """What is known so far, time and again, each better than the one before; the last is that of `place`.
+
+    Args and errors are those of `place`.
+    """
+    _check(job, grid, cells)
+    tell = progress or (lambda what, done, total: None)
+    with Workers(Asked(job), workers) as processes:
+        margins = Margins(job, processes)
+        for seen in _coarse(margins, freedom, grid, tell):
+            known, best = seen
+            yield known
+        for better in _refined(known, best, margins, freedom, tell):
+            known = better
+            yield known
+        if known.least >= 0:
+            known = replace(known, room=room(margins, freedom, known.place, tell), strokes=margins.strokes)
+            yield known
+        for shown in slices(margins, freedom, known.place, cells, tell) if cells else ():
+            known = replace(known, slices=(*known.slices, shown), strokes=margins.strokes)
+            yield known
+        yield replace(known, finished=True)
+
+
+def _check(job: Job, grid: int, cells: int) -> None:
+    if grid < 2:
+        raise InputError(f"{grid} places", where="grid", accepted="2 or more along each axis")
+    if cells and cells < 2:
+        raise InputError(f"{cells} cells", where="cells", accepted="2 or more along each axis, or 0 for none")
+    for hole in job.holes:
+        if hole.profile is not None:
+            raise InputError(
+                "has a given motion, which would not fit where the part is moved to",
+                where=f"hole {hole.id}",
+                accepted="holes without psi_deg",
+            )
+
+
+def _coarse(margins: Margins, freedom: Freedom, grid: int, tell: Progress) -> Iterator[_Known]:
+    """The grid, from its middle outwards; a place is left at the first hole that keeps it from the best few."""
+    axes = tuple(freedom.values(axis, grid) for axis in range(4))
+    places, found = freedom.grid(grid), np.full([axis.size for axis in axes], np.nan)
+    as_it_stands, middle = margins(np.array([np.zeros(4), places[0]]))
+    known = Placement(places[0], middle, as_it_stands, axes, found)
+    best: list[tuple[float, int, Array]] = []
+    for first in range(0, len(places), BATCH):
+        tell("coarse grid", first, len(places))
+        bar = best[-1][0] if len(best) == KEPT else margins.floor
+        batch = places[first : first + BATCH]
+        for n, seen in enumerate(margins(batch, bar), first):
+            if least(seen, bar) > bar:
+                best.append((least(seen), n, seen))
+                found[tuple(int(np.abs(axis - at).argmin()) for axis, at in zip(axes, places[n], strict=True))] = least(
+                    seen
+                )
+        best = sorted(best, key=lambda entry: (-entry[0], entry[1]))[:KEPT]
+        if best and best[0][0] > known.least:
+            known = replace(known, place=places[best[0][1]], margins=best[0][2])
+        known = replace(known, found=found.copy(), strokes=margins.strokes)
+        yield known, [(places[n], seen) for _, n, seen in best]
+    tell("coarse grid", len(places), len(places))
+
+
+def _refined(
+    known: Placement, best: Sequence[tuple[Array, Array]], margins: Margins, freedom: Freedom, tell: Progress
+) -> Iterator[Placement]:
+    """From the best places of the grid that are no neighbours of each other to the best near each."""
+    mesh = np.array([axis[1] - axis[0] if axis.size > 1 else 1.0 for axis in known.grid])
+    starts: list[tuple[Array, Array]] = []
+    for there, seen in best or [(known.place, known.margins)]:
+        if len(starts) < STARTS and not any((np.abs(there - other) < 1.5 * mesh).all() for other, _ in starts):
+            starts.append((there, seen))
+    total = 100 * len(starts)
+    for n, start in enumerate(starts):
+
+        def told(part: float, before: int = 100 * n) -> None:
+            tell("refining", before + int(100 * part), total)
+
+        told(0.0)
+        there, seen = bettered(margins, freedom, *start, mesh / 2, told)
+        if least(seen) > known.least:
+            known = replace(known, place=there, margins=seen)
+        known = replace(known, strokes=margins.strokes)
+        yield known
+    tell("refining", total, total)

@@ -1,0 +1,48 @@
+"""A finished workspace map in a few lines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from zerorev.maps.cells import STATUS
+from zerorev.maps.workspace import read_workspace_map
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["summary_lines"]
+
+WORDS = {
+    "answered": "with an answer",
+    "none": "reached, but none without a reversal",
+    "joint_limits": "reached outside the joint limits or the bound on the spin alone",
+    "out_of_reach": "out of reach",
+    "robot_base": "inside the robot's base",
+}
+
+
+def summary_lines(path: str | Path) -> list[str]:
+    """How many cells have an answer, and why the others have none.
+
+    Args:
+        path: of the map; it is read piece by piece, whatever its size.
+    """
+    found = read_workspace_map(path, load=False)
+    counts = np.zeros(len(STATUS), dtype=np.int64)
+    for part in _slabs(found):
+        status = part["status"].values
+        counts += np.bincount(status[status >= 0].ravel(), minlength=len(STATUS))
+    total = int(np.prod([found.sizes[name] for name in found["status"].dims]))
+    shown = [f"{count:,} {WORDS[name]}" for name, count in zip(STATUS, counts.tolist(), strict=True) if count]
+    unfinished = total - int(counts.sum())
+    return [f"{total:,} cells: " + ", ".join(shown + ([f"{unfinished:,} not yet looked at"] if unfinished else []))]
+
+
+def _slabs(found: Dataset) -> list[Dataset]:
+    """The map in slabs along its first dimension."""
+    first = str(found["status"].dims[0])
+    step = max(1, -(-found.sizes[first] // 100))
+    return [found.isel({first: slice(at, at + step)}) for at in range(0, found.sizes[first], step)]
