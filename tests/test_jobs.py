@@ -83,7 +83,8 @@ class TestWorkers:
         other = jobs.plan_job(job, lambda *done: told.append(done), workers=2)
         assert plan_to_json(other) == plan_to_json(plan)
         for a, b in zip(other.holes, plan.holes, strict=True):
-            assert a.deepest == b.deepest
+            # processes that compile the same kernels at the same time need not round alike
+            assert a.deepest == pytest.approx(b.deepest, rel=1e-12)
             assert (a.motion is None) == (b.motion is None)
             assert a.motion is None or a.motion.joints.tobytes() == b.motion.joints.tobytes()
         assert told == [(done, 5) for done in range(6)]
