@@ -30,7 +30,7 @@ class Context:
     """The thesis' robot and drill, and how much work a section may do.
 
     Attributes:
-        seeds: runs of the swarm from which a rate is told; tables of many trials take half as many.
+        seeds: runs of the swarm from which a rate is told; tables of many trials take three tenths as many.
         map_size: cells of the parameter map along each axis.
         kept: what several sections tell of, so that it is computed once.
         tell: called with (done, total) on the way through a section.
@@ -54,7 +54,7 @@ class Context:
     @property
     def few(self) -> int:
         """Seeds of a table with many rows."""
-        return max(2, self.seeds // 2)
+        return max(2, self.seeds * 3 // 10)
 
     @property
     def thesis(self) -> Settings:

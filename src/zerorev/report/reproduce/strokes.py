@@ -82,7 +82,7 @@ def make(context: Context) -> Section:
             f"n ≥ {BISECTION_STEPS}, so 8",
             "eq. 4.10",
             f"n ≥ {needed:.2f}, so {math.ceil(needed)}",
-            "no bisection: the depth is a root, to 0.002 % of itself",
+            "no bisection: the depth is one of the unknowns, 0.001 % of it kept back",
             "Agrees.",
         ),
     )

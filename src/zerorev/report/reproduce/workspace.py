@@ -79,7 +79,7 @@ def make(context: Context) -> Section:
     apart = difference(plane.thesis, plane.periodic)
     results = (*_results(plane, apart), *_volume_results(context, plane, volume))
     text = (
-        "The thesis took two days for these 81 cells, of one direction. Here each cell is a root search of some"
+        "The thesis took two days for these 81 cells, of one direction. Here each cell is a search of some"
         " milliseconds; the planes at 50 mm are computed on one side of the robot, as the thesis did.",
         "By its method: one swarm (Table 4, seed 0) in each cell at the depth that Table 5 prints, the spin within"
         " ±180°, reversals counted at 200 samples.",
