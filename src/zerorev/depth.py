@@ -39,9 +39,9 @@ ROUGH, ENOUGH = 1e-6, 1e-7  # relative: less is no gain
 ENOUGH_LACK = 1e-6  # [rad/m]
 SHORTER = 0.4  # of the legs of a start
 SPARE = 1e-3 * LEAST_RATE  # kept to the threshold, for rounding
-# points of a leg, and the share of the depth kept back: at the deepest a joint stops, so a plan ends a little before,
+# points of a leg, and shares of the depth kept back: at the deepest a joint stops, so a plan ends a little before,
 # and where rates change steeply next to the end of the reach it takes many points to see that it does
-CLOSER = ((33, 1e-5), (65, 1e-5), (257, 1e-5), (257, 1e-4), (257, 1e-3), (257, 3e-3), (257, 6e-3), (257, 1e-2))
+CLOSER = ((33, (1e-5,)), (65, (1e-5,)), (257, (1e-5, 1e-4, 1e-3, 3e-3, 6e-3, 1e-2)))
 
 
 @dataclass(frozen=True)
@@ -242,15 +242,16 @@ class _Search:
     def _settled(self, end: _End) -> Deepest | None:
         """The deepest stroke of a valley whose motion, followed closely, has no reversal."""
         rules = self.rules._replace(min_rate=self.min_rate + SPARE)
-        for looks, kept_back in CLOSER:
+        for looks, shares in CLOSER:
             deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", looks, weighed=True)
-            room = _shortened(deepest, 1 - kept_back)
-            room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
-            profile = motion_of(room, periodic=self.psi_bound is None)
-            hole = replace(self.hole, depth=room.depth)
-            score = evaluate(self.robot, self.tool, hole, profile, end.branch).score
-            if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
-                return Deepest(room.depth, profile, end.branch)
+            for kept_back in shares:
+                room = _shortened(deepest, 1 - kept_back)
+                room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
+                profile = motion_of(room, periodic=self.psi_bound is None)
+                hole = replace(self.hole, depth=room.depth)
+                score = evaluate(self.robot, self.tool, hole, profile, end.branch).score
+                if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
+                    return Deepest(room.depth, profile, end.branch)
         return None
 
 
