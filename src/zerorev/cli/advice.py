@@ -6,7 +6,7 @@ import math
 from functools import partial
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, need, not_over, numbers
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need, numbers
 from zerorev.report import terminal
 
 __all__ = ["offset", "rates"]
@@ -68,12 +68,9 @@ def offset(
         json: Print the answer as JSON on standard output, and nothing else there.
     """
     from zerorev.model.files import read_job
-    from zerorev.model.output import check_file, write_bytes, write_text
+    from zerorev.model.output import write_bytes, write_text
 
-    for path in (output, figure):
-        if path is not None:
-            check_file(path)
-            not_over(path, job)
+    check_outputs((output, figure), job)
     if figure is not None:
         need("matplotlib", "matplotlib", "--figure", "figures")
     offsets = [value / 1e3 for value in numbers(offsets_mm, "--offsets-mm")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -12,8 +12,19 @@ from cyclopts import App, Parameter, Token
 from zerorev.errors import InputError, OutputError
 
 __all__ = [
-    "BAD_INPUT", "BUG", "FINE", "FOUND", "INTERRUPTED", "PIPE_CLOSED", "Output", "Whole", "app", "map_app", "need",
-    "not_over", "numbers",
+    "BAD_INPUT",
+    "BUG",
+    "FINE",
+    "FOUND",
+    "INTERRUPTED",
+    "PIPE_CLOSED",
+    "Output",
+    "Whole",
+    "app",
+    "check_outputs",
+    "map_app",
+    "need",
+    "numbers",
 ]  # fmt: skip
 
 FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
@@ -67,10 +78,17 @@ def _whole(kind: object, tokens: Sequence[Token]) -> int:
 Whole = Annotated[int, Parameter(converter=_whole)]
 
 
-def not_over(output: Path, source: Path) -> None:
-    """Refuse to write over the file that is read."""
-    if output.exists() and source.exists() and output.samefile(source):
-        raise OutputError(str(output), "it is the file that is read")
+def check_outputs(outputs: Iterable[Path | None], *sources: Path) -> None:
+    """Refuse, before any work is done, files that could not be written, and to write over a file that is read."""
+    from zerorev.model.output import check_file
+
+    for output in outputs:
+        if output is None:
+            continue
+        check_file(output)
+        for source in sources:
+            if output.exists() and source.exists() and output.samefile(source):
+                raise OutputError(str(output), "it is the file that is read")
 
 
 def numbers(text: str, where: str) -> list[float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from zerorev.cli.common import FINE, Output, Whole, app, need, not_over
+from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, need
 from zerorev.errors import InputError
 from zerorev.report import terminal
 
@@ -48,12 +48,9 @@ def compare(
         json: Print the answer as JSON on standard output, and nothing else there.
     """
     from zerorev.model.files import read_job
-    from zerorev.model.output import check_file, write_bytes, write_text
+    from zerorev.model.output import write_bytes, write_text
 
-    for path in (output, figure):
-        if path is not None:
-            check_file(path)
-            not_over(path, job)
+    check_outputs((output, figure), job)
     if figure is not None:
         need("matplotlib", "matplotlib", "--figure", "figures")
     if seeds < 1:

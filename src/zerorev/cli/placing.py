@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, FOUND, Output, Whole, app, need, not_over
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, need
 from zerorev.errors import InputError
 from zerorev.report import terminal
 
@@ -62,12 +62,10 @@ def place(
     from zerorev.jobs import workers_for
     from zerorev.model.files import read_job
     from zerorev.model.moved_job import check_new_job
-    from zerorev.model.output import check_file, check_folder, write_text
+    from zerorev.model.output import check_folder, write_text
     from zerorev.model.text import json_text
 
-    if output is not None:
-        check_file(output)
-        not_over(output, job)
+    check_outputs((output,), job)
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
@@ -171,13 +169,10 @@ def share(
     from zerorev.jobs import workers_for
     from zerorev.model.files import read_job
     from zerorev.model.moved_job import check_new_job, write_job
-    from zerorev.model.output import check_file, check_folder, make_folder, write_text
+    from zerorev.model.output import check_folder, make_folder, write_text
     from zerorev.model.text import json_text
 
-    if output is not None:
-        check_file(output)
-        for job in jobs:
-            not_over(output, job)
+    check_outputs((output,), *jobs)
     targets = [] if write_jobs is None else [write_jobs / job.name for job in jobs]
     if write_jobs is not None:
         check_folder(write_jobs)

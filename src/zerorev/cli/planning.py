@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from zerorev.cli.common import FINE, FOUND, Output, app, need, not_over
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
 
 __all__ = ["depth", "plan"]
 
@@ -33,11 +33,9 @@ def plan(
         json: Print the plan as JSON on standard output, and nothing else there.
     """
     from zerorev.model.files import read_job
-    from zerorev.model.output import check_file, check_folder
+    from zerorev.model.output import check_folder
 
-    if output is not None:
-        check_file(output)
-        not_over(output, job)
+    check_outputs((output,), job)
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
@@ -77,11 +75,8 @@ def depth(
         json: Print what the file holds as JSON on standard output, and nothing else there.
     """
     from zerorev.model.files import read_job
-    from zerorev.model.output import check_file
 
-    if output is not None:
-        check_file(output)
-        not_over(output, job)
+    check_outputs((output,), job)
     options = {
         "legs": legs,
         "psi_bound_deg": psi_bound_deg,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zerorev.cli.common import FINE, FOUND, Output, app, need, not_over
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
 from zerorev.errors import InputError
 from zerorev.report import terminal
 
@@ -83,11 +83,9 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
     """
     from zerorev.model.files import read_plan
-    from zerorev.model.output import check_file, write_text
+    from zerorev.model.output import write_text
 
-    if output is not None:
-        check_file(output)
-        not_over(output, plan)
+    check_outputs((output,), plan)
     answer = read_plan(plan)
 
     from zerorev.program.export import export as to_program
