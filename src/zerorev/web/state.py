@@ -1,0 +1,200 @@
+"""What a page of the app shows, as one small immutable value; every change makes another one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+from zerorev.errors import InputError
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job, Settings
+from zerorev.model.plan import HolePlan, Plan, Strokes
+from zerorev.model.profile import Profile
+
+__all__ = [
+    "State",
+    "Steered",
+    "answered",
+    "opened_job",
+    "opened_plan",
+    "plan_of",
+    "selected",
+    "shown",
+    "steered",
+    "with_hole",
+    "with_settings",
+    "without_hole",
+]
+
+NONE: Mapping[str, HolePlan] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Steered:
+    """A motion made by hand.
+
+    Attributes:
+        profile: the spin along the path.
+        branch: 0..7.
+    """
+
+    profile: Profile
+    branch: int
+
+
+@dataclass(frozen=True)
+class State:
+    """What a page shows.
+
+    Attributes:
+        job: robot, tool, holes and settings, or None before anything is opened.
+        answers: of the holes that have one, by their id; each is of the hole as it is in the job.
+        selected: id of the hole that is looked at, or None.
+        steered: the motion of the selected hole as the user has it in hand, or None: the planned one.
+        strokes: whether the answers are of the strokes `asked` for or of each hole's `deepest`.
+    """
+
+    job: Job | None = None
+    answers: Mapping[str, HolePlan] = field(default_factory=lambda: NONE)
+    selected: str | None = None
+    steered: Steered | None = None
+    strokes: Strokes = "asked"
+
+    @property
+    def hole(self) -> Hole | None:
+        """The selected hole."""
+        if self.job is None:
+            return None
+        return next((hole for hole in self.job.holes if hole.id == self.selected), None)
+
+    @property
+    def answer(self) -> HolePlan | None:
+        """The selected hole's answer."""
+        return None if self.selected is None else self.answers.get(self.selected)
+
+
+def opened_job(job: Job) -> State:
+    """A job of which nothing is planned yet, its first hole selected."""
+    return State(job, selected=job.holes[0].id)
+
+
+def opened_plan(plan: Plan) -> State:
+    """A plan with its answers, its first hole selected."""
+    holes = tuple(answer.hole for answer in plan.holes)
+    job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
+    answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
+    return State(job, answers, holes[0].id, strokes=plan.strokes)
+
+
+def selected(state: State, hole: str) -> State:
+    """Another hole is looked at; the motion in hand is let go.
+
+    Raises:
+        InputError: no such hole.
+    """
+    if state.job is None or all(each.id != hole for each in state.job.holes):
+        raise InputError(f"no hole '{hole}'", where="hole", accepted="the id of one of the job's holes")
+    return state if hole == state.selected else replace(state, selected=hole, steered=None)
+
+
+def steered(state: State, motion: Steered | None) -> State:
+    """The selected hole's motion is taken in hand, or let go."""
+    return replace(state, steered=motion)
+
+
+def shown(state: State) -> Steered | None:
+    """The motion that the page shows of the selected hole: in hand, or as planned."""
+    if state.steered is not None:
+        return state.steered
+    motion = state.answer.motion if state.answer else None
+    return None if motion is None else Steered(motion.profile, motion.branch)
+
+
+def answered(state: State, *answers: HolePlan, strokes: Strokes = "asked") -> State:
+    """Holes have been answered; a motion of them that was in hand is let go.
+
+    Answers of another kind of strokes are dropped; where the deepest strokes were asked for, the holes become as deep.
+    Answers of holes that are gone, or have changed since, are not taken.
+    """
+    if state.job is None:
+        return state
+    asked = {hole.id: hole for hole in state.job.holes}
+    fresh = {
+        each.hole.id: each for each in answers if each.hole.id in asked and _same(each, asked[each.hole.id], strokes)
+    }
+    kept = state.answers if strokes == state.strokes else NONE
+    let_go = state.selected in fresh
+    return replace(
+        state, answers=MappingProxyType({**kept, **fresh}), strokes=strokes, steered=None if let_go else state.steered
+    )
+
+
+def with_hole(state: State, hole: Hole, instead_of: str | None = None) -> State:
+    """A hole is added, or takes the place of one, whose answer goes with it; it is selected.
+
+    Raises:
+        InputError: nothing is opened yet, or another hole has this id.
+    """
+    if state.job is None:
+        raise InputError("nothing is opened", where="hole", accepted="a job, opened before")
+    old = state.job.holes
+    holes = (*old, hole) if instead_of is None else tuple(hole if each.id == instead_of else each for each in old)
+    answers = {key: value for key, value in state.answers.items() if key not in (instead_of, hole.id)}
+    return replace(
+        state, job=replace(state.job, holes=holes), answers=MappingProxyType(answers), selected=hole.id, steered=None
+    )
+
+
+def without_hole(state: State, hole: str) -> State:
+    """A hole is taken out, its neighbour selected.
+
+    Raises:
+        InputError: it is the last one.
+    """
+    if state.job is None:
+        return state
+    at = next((n for n, each in enumerate(state.job.holes) if each.id == hole), None)
+    if at is None:
+        return state
+    holes = state.job.holes[:at] + state.job.holes[at + 1 :]
+    if not holes:
+        raise InputError("the last hole cannot be taken out", where="hole", accepted="a job of one hole or more")
+    answers = {key: value for key, value in state.answers.items() if key != hole}
+    beside = holes[min(at, len(holes) - 1)].id if state.selected == hole else state.selected
+    return replace(
+        state, job=replace(state.job, holes=holes), answers=MappingProxyType(answers), selected=beside, steered=None
+    )
+
+
+def with_settings(state: State, settings: Settings) -> State:
+    """The job is planned by other settings, so that no answer holds any more."""
+    if state.job is None or settings == state.job.settings:
+        return state
+    return replace(state, job=replace(state.job, settings=settings), answers=NONE, steered=None)
+
+
+def plan_of(state: State) -> Plan:
+    """The plan of all holes that have an answer, as the command line would write it.
+
+    Raises:
+        InputError: none has.
+    """
+    if state.job is None or not state.answers:
+        raise InputError("nothing is planned yet", where="plan", accepted="a planned hole or more")
+    job = state.job
+    holes = tuple(state.answers[hole.id] for hole in job.holes if hole.id in state.answers)
+    from zerorev.jobs import unanswered
+
+    return unanswered(job, state.strokes, holes)
+
+
+def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:
+    """Whether an answer is of this very hole, but for the depth where the deepest was asked for."""
+    hole = answer.hole
+    return (
+        bool((hole.target == asked.target).all())
+        and bool((hole.direction == asked.direction).all())
+        and bool((hole.psi_zero == asked.psi_zero).all())
+        and (strokes == "deepest" or hole.depth == asked.depth)
+    )
