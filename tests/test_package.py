@@ -40,6 +40,18 @@ def test_importing_loads_nothing_heavy():
     assert done.stdout.strip() == "[]", done.stderr
 
 
+def test_planning_loads_no_compiler_once_the_kernels_are_cached():
+    # numba.np.arraymath, which numba imports before it compiles, imports scipy.linalg: half of a first answer's time
+    code = (
+        "import sys, zerorev as zr; robot, tool = zr.read_robot('kuka_kr6_r700_2'), zr.read_tool('thesis_drill');"
+        "plan = zr.plan(robot, tool, zr.Hole('1', target=[0.5, 0.3, 0.8], direction=[1, 0, 0], depth=0.05));"
+        "print(plan.verified.passed, [m for m in ('numba.np.arraymath', 'scipy.linalg') if m in sys.modules])"
+    )
+    run("-c", code)  # so that they are
+    done = run("-c", code)
+    assert done.stdout.strip() == "True []", done.stderr
+
+
 def test_types_are_published():
     assert (Path(zerorev.__file__).parent / "py.typed").exists()
 

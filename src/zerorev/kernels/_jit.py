@@ -1,17 +1,45 @@
-"""Every compiler option, in one place, and the one notice that compiling takes a while."""
+"""Every compiler option, in one place, the cache of what is compiled, and the one notice that it takes a while."""
 
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
+from typing import Any
 
 import numba
 from numba.core import event
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
+from numba.core.runtime.nrt import rtsys
 
 __all__ = ["kernel"]
 
 # No fastmath: it would make isnan(nan) false, and NaN is how a kernel says "no such pose".
 # Contracting a * b + c into one operation is another matter: it is faster, more precise, and keeps NaN.
-kernel = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract"})
+_compiled = numba.njit(nogil=True, error_model="numpy", fastmath={"contract"})
+
+
+class _Cache(FunctionCache):
+    """The cache of `numba.njit(cache=True)`, but a kernel that is in it is loaded without the compiler.
+
+    Numba would import all that a compiler needs first, SciPy's linear algebra included: 0.4 s, where the kernels of a
+    plan load in 0.2 s. It still does so before it compiles anything. Loading itself imports only the modules of Numba
+    that a kernel's functions are from; so as to keep SciPy out, kernels that a plan needs call nothing of
+    `numba.np.arraymath` (`np.round`, `np.min`, ...; `np.rint` and `np.minimum` are not among them).
+    """
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        rtsys.initialize(target_context)  # what allocates arrays
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+
+
+def kernel(function: Callable[..., Any]) -> Any:
+    """Compile a function at its first call with arguments of new types, or load it if it was compiled before."""
+    compiled = _compiled(function)
+    if isinstance(compiled, Dispatcher):  # not so with NUMBA_DISABLE_JIT
+        compiled._cache = _Cache(function)  # type: ignore[attr-defined, no-untyped-call]
+    return compiled
 
 
 class _SayOnce(event.Listener):

@@ -286,7 +286,7 @@ def _room(first, moved, unit, rules, spare):  # type: ignore[no-untyped-def]
     for i in range(6):
         middle = 0.5 * (rules.lower[i] + rules.upper[i])
         centre = first[i] + 0.5 * (moved[0, i] + moved[1, i])
-        turns = full * np.round((middle - centre) / full) if np.isfinite(middle) else 0.0
+        turns = full * np.rint((middle - centre) / full) if np.isfinite(middle) else 0.0
         for k in range(2):
             end, r = first[i] + moved[k, i] + turns, 6 * k + i
             # a joint that goes down comes nearest to its lower limit
