@@ -23,10 +23,10 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.exact import GRID, LIMIT_SLACK, Asked
 from zerorev.search.free import deepest_free
+from zerorev.search.problem import Asked
 from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
+from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, target_spins
 
 __all__ = ["Deepest", "deepest_stroke"]
 

@@ -7,7 +7,7 @@ import pytest
 
 from oracles.starts import LEAST_RATE, SLOW, Start, asked, starts
 from zerorev.kernels import fan, legs
-from zerorev.search.exact import Asked
+from zerorev.search.problem import Asked
 
 
 class TestFan:

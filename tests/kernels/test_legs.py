@@ -12,7 +12,7 @@ from oracles.starts import ALL_JOINTS, LEAST_RATE, SLOW, TOOL, Start, asked, sta
 from zerorev import kinematics
 from zerorev.kernels import field, legs
 from zerorev.model.hole import Hole
-from zerorev.search.exact import Asked
+from zerorev.search.problem import Asked
 
 NOWHERE = np.zeros(6)  # joints at the target, where no limit is looked at
 

@@ -12,7 +12,7 @@ from zerorev import kinematics
 from zerorev.kernels import field, legs
 from zerorev.model.files import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
-from zerorev.search.exact import Asked
+from zerorev.search.problem import Asked
 
 ROBOTS = [read_robot(name) for name in robot_names()]
 TOOL = read_tool("thesis_drill")

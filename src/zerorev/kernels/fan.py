@@ -3,6 +3,7 @@
 A fan answers which pair of legs, whatever reverses, has the fewest reversals.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
+`asked` is a `zerorev.search.problem.Asked`, `fan` a `zerorev.search.survey.Fan` throughout.
 """
 
 from __future__ import annotations

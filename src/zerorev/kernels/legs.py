@@ -6,6 +6,7 @@ to lie above the critical rates of all joints that must not reverse, the other b
 its own: along the one line of slopes u on its side.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
+`asked` is a `zerorev.search.problem.Asked` throughout.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, work, leg):  # typ
     controller_angles(arm, cs, branch % 2 == 1, last)
     for i in range(6):
         exact = last[i] - first[i]
-        exact += 2.0 * np.pi * np.round((leg[END_ANGLE, i] - exact) / (2.0 * np.pi))
+        exact += 2.0 * np.pi * np.rint((leg[END_ANGLE, i] - exact) / (2.0 * np.pi))
         leg[END_ANGLE, i] = exact
         leg[LEAST_ANGLE, i] = min(leg[LEAST_ANGLE, i], exact)
         leg[GREATEST_ANGLE, i] = max(leg[GREATEST_ANGLE, i], exact)
@@ -494,8 +495,10 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
         while end < count and ceiling[end] >= asked.min_rate:
             end += 1
         if end > first:
-            around = estimate[max(first - 1, 0) : min(end + 1, count)]
-            if np.min(around) * (1.0 - SIEVE_ERROR) < best[0]:
+            least = np.inf
+            for j in range(max(first - 1, 0), min(end + 1, count)):
+                least = np.minimum(least, estimate[j])
+            if least * (1.0 - SIEVE_ERROR) < best[0]:
                 for j in first + np.argsort(estimate[first:end]):
                     cost, excess, _ = try_slope(
                         arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best

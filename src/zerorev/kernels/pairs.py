@@ -4,6 +4,7 @@ Both wrist flips of a posture share their legs, so it is a posture that is searc
 limits allow.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
+`asked` is a `zerorev.search.problem.Asked` throughout.
 """
 
 from __future__ import annotations

@@ -26,8 +26,7 @@ from zerorev.model.plan import Measures
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JUMP, turns_within
-from zerorev.search.exact import LIMIT_SLACK
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST
+from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
 

@@ -7,9 +7,11 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 
-__all__ = ["LEAST_RATE", "LONGEST_TWIST", "straight_motion", "target_spins"]
+__all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "LONGEST_TWIST", "straight_motion", "target_spins"]
 
 LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
+GRID = 240  # spins at the target in one turn
+LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
 LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
 
 

@@ -25,13 +25,13 @@ from zerorev.model.job import Objective, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import turns_within
-from zerorev.search.exact import LIMIT_SLACK, Found, search
+from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, straight_motion, target_spins
+from zerorev.search.problem import Found
+from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, straight_motion, target_spins
 
 __all__ = ["search_weighted"]
 
-GRID = 240  # spins at the target in one turn
 SLOPES = 24  # on one side of the critical rates
 VALLEYS, FINALISTS = 6, 2  # points of the grid that are zoomed in on; of those, that are zoomed in on finely
 ZOOM_SPINS, ZOOM_SLOPES = 3, 5  # on either side of the best point so far, at distances that quarter

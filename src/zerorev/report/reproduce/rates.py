@@ -17,7 +17,8 @@ from zerorev.report.reproduce.published import POSITIONS
 from zerorev.report.reproduce.section import Cell, Column, Picture, Result, Section, Table
 from zerorev.report.reproduce.statistics import mean_interval, rate_interval
 from zerorev.report.reproduce.swarm import standard_runs
-from zerorev.search.exact import Found, search
+from zerorev.search.exact import search
+from zerorev.search.problem import Found
 from zerorev.search.swarm import SwarmResult
 
 __all__ = ["make"]

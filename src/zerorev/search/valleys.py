@@ -1,0 +1,259 @@
+"""The best motion that keeps a set of joints: every valley of the target line gone down to its bottom (theory §2, §3).
+
+For one spin at the target, one leg has to lie above the critical rates of all joints that are to keep their direction
+and the other below them, and the best leg on each side is found on its own, by a root search along one line of slopes
+(`kernels.legs`). What is left is one dimension, psi_t, on each branch: it is looked over on a grid, and every valley of
+the grid is gone down to its bottom.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from zerorev.kernels import legs, pairs
+from zerorev.kernels.field import ROOM
+from zerorev.model._arrays import Array
+from zerorev.search.problem import Asked, Found, Mask, Problem
+from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
+
+__all__ = ["Valleys"]
+
+NODES, FINE_NODES = 24, 96  # points on a leg: going down, the last polish
+DESCENT_STEPS = 10  # golden section from two steps of the grid to some 0.02 deg
+POLISH_STEPS, FINE_STEPS = 16, 12  # the same from there to 3e-5 deg, and on fine legs to 6e-6 deg
+MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
+CANDIDATES = 8  # valleys gone down, at most
+PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
+WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
+WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
+
+
+class _Pair(NamedTuple):
+    """Two legs out of one point of the target line, and what they are worth (least is best)."""
+
+    value: float
+    branch: int
+    psi_t: float
+    above: float
+    below: float
+
+    @classmethod
+    def of(cls, row: Array) -> _Pair:
+        """From a row that `kernels.pairs` writes."""
+        branch = int(row[pairs.BRANCH])
+        return cls(row[pairs.VALUE], branch, row[pairs.SPIN], row[pairs.SLOPE_ABOVE], row[pairs.SLOPE_BELOW])
+
+
+class Valleys:
+    """The target line of a hole on one branch or several, and the search along it."""
+
+    def __init__(self, problem: Problem, branches: list[int]) -> None:
+        """Look at nothing yet.
+
+        Args:
+            problem: what is asked.
+            branches: where to look; of all of them it is the best motion that is wanted.
+        """
+        self.problem = problem
+        self.arm, self.plane, self.psi = problem.robot.arm, problem.plane, problem.psi
+        self.step, self.periodic = problem.step, problem.periodic
+        self.branches = np.isin(np.arange(8), branches)
+
+    def motions(self, keep: Mask) -> Iterator[Found]:
+        """The best motions that keep a set of joints: the others turning at the target alone, and within legs, too.
+
+        Args:
+            keep: whether a joint is to keep its direction, shape (6,).
+        """
+        if not self._can_keep(keep):
+            return
+        for turn_inside in (False, True):
+            motion = self.best_motion(keep, turn_inside=turn_inside)
+            if motion is not None:
+                yield motion
+
+    def best_motion(self, keep: Mask, *, turn_inside: bool = False) -> Found | None:
+        """The best motion that keeps a set of joints, or None: the threshold first, then the objective.
+
+        Args:
+            keep: whether a joint is to keep its direction, shape (6,).
+            turn_inside: whether the others may turn within a leg, too, and not at the target alone.
+        """
+        asked, mode = self.problem.objective(turn_inside=turn_inside)
+        pair = min(self._bottoms(keep, asked, mode), default=None)
+        # at the mean rule, too, it is the points that must not turn round
+        least = self.problem.asked(0.0, turn_inside=turn_inside)
+        if pair is None and asked.min_rate > least.min_rate:
+            # the threshold cannot be met: the greatest margin that can
+            asked, mode = least, legs.GREATEST_MARGIN
+            pair = min(self._bottoms(keep, asked, mode), default=None)
+        return None if pair is None else self._polished(keep, asked, mode, pair)
+
+    def _can_keep(self, keep: Mask) -> bool:
+        """Whether any motion keeps these joints: most sets are tried in vain, and once is enough."""
+        if (keep & self._hopeless).any():
+            return False
+        asked = self.problem.asked(0.0, turn_inside=True)
+        return next(self._bottoms(keep, asked, legs.GREATEST_MARGIN), None) is not None
+
+    @cached_property
+    def _hopeless(self) -> Mask:
+        """Joints that cannot be kept even on their own, as far as the coarse look can tell, shape (6,)."""
+        asked = self.problem.asked(0.0, turn_inside=True)
+        return np.array([not (self._look(alone, asked, legs.TRAVEL)[1] > 0).any() for alone in np.eye(6, dtype=bool)])
+
+    def _look(self, keep: Mask, asked: Asked, mode: int) -> tuple[Array, Array, Array]:
+        """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
+        out = np.empty((4, self.psi.size, pairs.LOOKED))
+        lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
+        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, mode, out)
+        value, margin, guess = np.moveaxis(out[..., :3], -1, 0)
+        return value, margin, guess
+
+    def _bottoms(self, keep: Mask, asked: Asked, mode: int) -> Iterator[_Pair]:
+        """Go down every valley of the coarse look that may hold the best pair; each pair betters those before it."""
+        value, margin, guess = self._look(keep, asked, mode)
+        # between the grid's spins, too, the margin may just be enough
+        peaks = [(np.inf, -margin[p, n], p, n) for p, n in self._peaks(margin)]
+        if mode == legs.GREATEST_MARGIN:
+            valleys = peaks
+        else:
+            valleys = [(value[p, n], -margin[p, n], p, n) for p, n in self._peaks(-value)]
+            valleys += [peak for peak in peaks if value[peak[2:]] == np.inf]
+        best: _Pair | None = None
+        vain, patience = 0, LONG_PATIENCE if keep.all() else PATIENCE
+        gone_down: list[tuple[int, float, float]] = []  # posture, and the spins between which all was looked at
+        for looked_at, (rough, _, posture, n) in enumerate(sorted(valleys)):
+            spin = self.psi[n]
+            if vain == patience or not self._may_reach(margin, posture, n, asked.min_rate):
+                continue
+            if best is not None and mode != legs.GREATEST_MARGIN and keep.all():
+                if looked_at >= CANDIDATES and rough < np.inf:
+                    continue
+                if best.value < min(rough / WORTH_A_LOOK, guess[posture, n] / WORTH_A_GUESS):
+                    continue
+            if any(posture == other and low <= spin <= high for other, low, high in gone_down):
+                continue
+            bound = np.inf if best is None else best.value
+            pair = self._descend(keep, asked, mode, posture, n, bound)
+            if pair is None and rough < np.inf:
+                # the limits cut the bottom off, which the grid does not know in full: where the valley begins to do
+                shoulders = self._shoulders(keep, asked, mode, value[posture], posture, n)
+                pairs_there = [self._descend(keep, asked, mode, posture, m, bound) for m in shoulders]
+                pair = min((one for one in pairs_there if one is not None), default=None)
+            vain += pair is None
+            if pair is not None:
+                gone_down.append(
+                    (posture, min(spin, pair.psi_t) - self.step / 2, max(spin, pair.psi_t) + self.step / 2)
+                )
+            if pair is not None and (best is None or pair.value < best.value - 1e-9):
+                best = pair
+                yield pair
+
+    def _peaks(self, height: Array) -> list[tuple[int, int]]:
+        """Posture and grid index of every local maximum of `height`, shape (4, K), that is not -inf."""
+        left, right = np.roll(height, 1, axis=1), np.roll(height, -1, axis=1)
+        if not self.periodic:
+            left[:, 0] = right[:, -1] = -np.inf
+        # a plateau across the whole circle has no strict right side
+        found = np.argwhere((height > -np.inf) & (height >= left) & (height > right))
+        return [(int(p), int(n)) for p, n in found]
+
+    def _may_reach(self, margin: Array, posture: int, n: int, wanted: float) -> bool:
+        """Whether the margin, which varies from one grid spin to the next, may reach `wanted` in between."""
+        row, k = margin[posture], self.psi.size
+        if row[n] >= wanted:
+            return True
+        around = [row[(n + d) % k] for d in (-2, -1, 1, 2) if self.periodic or 0 <= n + d < k]
+        known = [value for value in around if value > -np.inf]
+        variation = max((abs(row[n] - value) for value in known), default=np.inf)
+        return bool(row[n] + 2 * variation >= wanted)
+
+    def _descend(self, keep: Mask, asked: Asked, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
+        """The bottom of the valley around one spin of the grid."""
+        step = self.step
+        low, high = self.psi[n] - step, self.psi[n] + step
+        for _ in range(MOST_SHIFTS):
+            pair = self._bottom(keep, asked, mode, posture, low, high, NODES, DESCENT_STEPS, bound)
+            if pair is None or low + 0.02 * step < pair.psi_t < high - 0.02 * step:
+                break
+            # the rough look was mistaken about where the bottom is: go on over the edge
+            low, high = (pair.psi_t - step, pair.psi_t + step)
+        return pair
+
+    def _shoulders(self, keep: Mask, asked: Asked, mode: int, value: Array, posture: int, n: int) -> list[int]:
+        """The nearest spins of the grid to either side of one, within its valley, at which some pair will do."""
+        found, row, work = [], np.empty(pairs.COLUMNS), np.empty(ROOM)
+        for side in (-1, 1):
+            for away in range(1, MOST_SHIFTS + 1):
+                m = n + side * away
+                if not (self.periodic or 0 <= m < self.psi.size) or value[m % self.psi.size] == np.inf:
+                    break
+                pairs.best_pair(
+                    self.arm, self.plane, posture, self.psi[m % self.psi.size], keep, asked, asked.unlimited(),
+                    self.branches, mode, NODES, np.inf, work, row,
+                )  # fmt: skip
+                if np.isfinite(row[pairs.VALUE]):
+                    found.append(m % self.psi.size)
+                    break
+        return found
+
+    def _bottom(
+        self,
+        keep: Mask,
+        asked: Asked,
+        mode: int,
+        posture: int,
+        low: float,
+        high: float,
+        nodes: int,
+        steps: int,
+        bound: float = np.inf,
+    ) -> _Pair | None:
+        """The best pair between two spins, or None where none will do."""
+        if not self.periodic:
+            low, high = max(low, self.psi[0]), min(high, self.psi[-1])
+        row = np.empty(pairs.COLUMNS)
+        pairs.descend(
+            self.arm, self.plane, posture, low, high, keep, asked, asked.unlimited(), self.branches, mode,
+            nodes, steps, bound, row,
+        )  # fmt: skip
+        return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
+
+    def _polished(self, keep: Mask, asked: Asked, mode: int, pair: _Pair) -> Found | None:
+        """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
+        wanted = asked.min_rate
+        around = 0.02 * self.step
+        pair = (
+            self._bottom(
+                keep, asked, mode, pair.branch // 2, pair.psi_t - around, pair.psi_t + around, NODES, POLISH_STEPS
+            )
+            or pair
+        )
+        around /= 30
+        found, shy = None, LIMIT_SLACK
+        for _ in range(6):
+            low, high = pair.psi_t - around, pair.psi_t + around
+            fine = self._bottom(keep, asked, mode, pair.branch // 2, low, high, FINE_NODES, FINE_STEPS)
+            found = self._motion(pair if fine is None else fine)
+            if found is not None:
+                score = found.score
+                turned = np.array(score.reversals_per_joint)[keep].sum()
+                rates = score.min_rate[keep] if not asked.mean_rule else score.mean_rate[keep]
+                short = wanted - rates.min(initial=np.inf)
+                if not turned and short <= 1e-9 * wanted:
+                    return found
+            else:
+                # over a limit by what the nodes do not see
+                short, shy = 0.0, 4.0 * shy
+                asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
+            # the sampled legs did not see the lowest point: ask for what was missing, and look again
+            asked = asked._replace(min_rate=asked.min_rate + max(1.5 * short, LEAST_RATE))
+        return found
+
+    def _motion(self, pair: _Pair) -> Found | None:
+        return self.problem.found(pair.branch, pair.psi_t, (pair.above, pair.below))

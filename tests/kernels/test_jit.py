@@ -1,0 +1,46 @@
+"""The cache of compiled kernels: what another version has left in it does no harm."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+MODULE = """
+from typing import NamedTuple
+from zerorev.kernels._jit import kernel
+
+class {name}(NamedTuple):
+    depth: float
+
+@kernel
+def twice(asked):
+    return 2.0 * asked.depth
+
+print(twice({name}(21.0)))
+"""
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
+def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(tmp_path: Path):
+    def run(name: str) -> str:
+        (tmp_path / "asking.py").write_text(MODULE.format(name=name))
+        done = subprocess.run(
+            [sys.executable, "-c", "import asking"],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    assert run("Asked") == run("Wanted") == "42.0\n"
+    index = next((tmp_path / "cache").rglob("*.nbi")).read_bytes()
+    assert b"Wanted" in index
+    assert b"Asked" not in index
