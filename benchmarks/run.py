@@ -6,6 +6,7 @@ import argparse
 import platform
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -17,6 +18,8 @@ from benchmarks.parts import (
     field,
     holes,
     job,
+    map_great,
+    map_scaling,
     maps,
     optimum,
     parameter_map,
@@ -33,6 +36,8 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "deepest": deepest.run,
     "parameter_map": parameter_map.run,
     "map": maps.run,
+    "map_scaling": map_scaling.run,
+    "map_great": map_great.run,
     "certificate": certificate.run,
     "start": start.run,
     "job": job.run,
@@ -45,8 +50,9 @@ ROOT = Path(__file__).parents[1]
 def main() -> int:
     """Run the parts asked for, then write the page of all parts that have been run; 1 where something does not hold."""
     asked = _arguments()
-    options = Options.quick() if asked.quick else Options(seeds=asked.seeds, holes=asked.holes)
     folder = asked.out / "quick" if asked.quick else asked.out
+    full = Options(seeds=asked.seeds, holes=asked.holes, peer_seeds=asked.peer_seeds, cells=asked.cells)
+    options = replace(Options.quick() if asked.quick else full, folder=folder, workers=asked.workers)
     for name in asked.parts or PARTS:
         print(f"--- {name}", flush=True)
         section = PARTS[name](options)
@@ -66,6 +72,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="little of everything, to see that it runs")
     parser.add_argument("--seeds", type=int, default=Options.seeds, help="of each random peer at each position")
     parser.add_argument("--holes", type=int, default=Options.holes, help="at random places")
+    parser.add_argument("--peer-seeds", type=int, default=Options.peer_seeds, help="of each random peer at each hole")
+    parser.add_argument("--workers", type=int, help="processes that the holes are shared out over; one a core")
+    parser.add_argument("--cells", type=int, default=Options.cells, help="of the great map; 1,000,000 is all of it")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "bench", help="folder for the JSON files")
     parser.add_argument("--page", type=Path, default=ROOT / "docs" / "benchmarks.md", help="the page that is written")
     asked = parser.parse_args()

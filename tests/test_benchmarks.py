@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import importlib
-from dataclasses import replace
+import json
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from benchmarks import arm_numpy, scorer
+from benchmarks.box import content, thinned, write_map_file
 from benchmarks.cases import Answer, Case, drilled, mirrored, random_place
+from benchmarks.parts import Options
 from benchmarks.peers.objective import NumbaObjective, NumpyObjective, graded
 from benchmarks.peers.swarm import BOUND, swarm
 from benchmarks.table import Goal, Section, load, page, save
@@ -16,6 +21,7 @@ from benchmarks.timing import duration, in_turns
 
 from zerorev import kinematics
 from zerorev.evaluation import evaluate
+from zerorev.model.map_file import read_map_file
 from zerorev.model.profile import Profile
 
 
@@ -220,6 +226,81 @@ class TestCases:
             T = kinematics.tcp_pose(place.hole, 0.0, np.linspace(-np.pi, np.pi, 72))
             T = T @ np.linalg.inv(place.tool.T_flange_tcp)
             assert not np.isnan(kinematics.inverse(place.robot, T)).all()
+
+
+class TestBox:
+    @pytest.mark.parametrize("cells", [1, 400, 3000, 100_000])
+    def test_a_thinned_grid_is_part_of_the_box_and_spread_over_it(self, cells):
+        whole, thin = thinned(10**6), thinned(cells)
+        assert whole.shape == (100, 100, 20, 5)
+        assert cells <= thin.cells <= max(2 * cells, 5)
+        for axis, kept in zip(whole.axes, thin.axes, strict=True):
+            assert set(kept) <= set(axis)
+            step = len(axis) / len(kept)
+            gaps = np.diff(np.concatenate([[-1], np.searchsorted(axis, kept), [len(axis)]]))
+            assert (gaps[1:-1] <= np.ceil(step)).all()
+            assert max(gaps[0], gaps[-1]) <= step / 2 + 1.5
+
+    def test_its_map_file_asks_for_it(self, tmp_path):
+        thin = thinned(400)
+        write_map_file(thin, tmp_path / "thin.yaml")
+        again = read_map_file(tmp_path / "thin.yaml")
+        for name in ("axes", "directions"):
+            for here, there in zip(getattr(thin, name), getattr(again, name), strict=True):
+                np.testing.assert_array_equal(here, there)
+        assert again.question.psi_reference == thin.question.psi_reference
+
+    def test_content(self, tmp_path):
+        (tmp_path / "in").mkdir()
+        (tmp_path / "in" / "one").write_bytes(b"1")
+        assert content(tmp_path) == {str(Path("in") / "one"): b"1"}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="how much memory a process holds is told elsewhere in other words")
+class TestWatched:
+    BUSY = "import time; held = b'1' * {size}; t = time.process_time()\nwhile time.process_time() - t < 1.5: pass"
+
+    @pytest.fixture(autouse=True)
+    def watched(self):
+        pytest.importorskip("psutil")
+        from benchmarks.watched import watched
+
+        return watched
+
+    def test_of_a_process_and_its_child(self, watched, tmp_path):
+        child = self.BUSY.format(size=300 * 2**20)
+        code = f"import subprocess, sys; held = b'1' * {100 * 2**20}; subprocess.run([sys.executable, '-c', {child!r}])"
+        cost = watched([sys.executable, "-c", code], tmp_path / "log.json")
+        assert 300 <= cost.most_of_one / 2**20 < 380
+        assert 400 <= cost.most_of_all / 2**20 < 500
+        assert (cost.processes, cost.runs) == (2, 1)
+        assert 0.5 < cost.processor < cost.seconds
+
+    def test_a_run_that_was_broken_off_counts(self, watched, tmp_path):
+        log = tmp_path / "log.json"
+        fails = f"import sys; {self.BUSY.format(size=200 * 2**20)}\nsys.stderr.write('no room'); sys.exit(3)"
+        with pytest.raises(RuntimeError, match=r"ends with 3: no room"):
+            watched([sys.executable, "-c", fails], log)
+        first = json.loads(log.read_text())
+        total = watched([sys.executable, "-c", self.BUSY.format(size=1)], log)
+        assert total.runs == 2
+        assert total.most_of_one == first["most_of_one"] > 200 * 2**20
+        assert total.seconds > first["seconds"] + 1
+        assert asdict(total) == json.loads(log.read_text())
+        assert total.finished > first["finished"]
+        assert watched(["no such command"], log) == total
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["map_scaling", "map_great"])
+@pytest.mark.filterwarnings("ignore")  # those of dask are not ours
+def test_the_parts_of_the_maps_run(name, tmp_path):
+    pytest.importorskip("distributed")
+    part = importlib.import_module(f"benchmarks.parts.{name}")
+    section = part.run(replace(Options.quick(), cells=100, folder=tmp_path))
+    assert section.failures == []
+    assert len(section.rows) == 3
+    assert not list(tmp_path.iterdir())
 
 
 class TestPage:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 __all__ = ["Options"]
 
@@ -15,17 +16,25 @@ class Options:
         seeds: of each random peer at each position.
         rounds: of what is timed and not random.
         holes: at random places.
+        peer_seeds: of each random peer at each of those.
+        workers: processes that those are shared out over; None: one a core.
         poses: in a batch.
         jobs: numbers of holes of whole jobs.
+        cells: of the great map, of a million at most; those of the other maps go by it.
+        folder: where what takes long is kept until it is finished, to be gone on with.
     """
 
     seeds: int = 20
     rounds: int = 15
     holes: int = 200
+    peer_seeds: int = 20
+    workers: int | None = None
     poses: int = 20_000
     jobs: tuple[int, ...] = (100, 400, 1600)
+    cells: int = 100_000
+    folder: Path = Path("out/bench")
 
     @classmethod
     def quick(cls) -> Options:
         """Enough to see that everything runs; the figures mean nothing."""
-        return cls(seeds=2, rounds=3, holes=4, poses=2_000, jobs=(60, 120))
+        return cls(seeds=2, rounds=3, holes=4, peer_seeds=2, poses=2_000, jobs=(60, 120), cells=400)

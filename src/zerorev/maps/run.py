@@ -20,7 +20,7 @@ from zerorev.maps.workspace import MapStore
 from zerorev.model.map_task import MapTask, Question
 from zerorev.workers import Workers
 
-__all__ = ["Answered", "Ran", "Runner", "local", "run_map"]
+__all__ = ["Answered", "Ran", "Runner", "answering", "local", "run_map"]
 
 BEGINNING = 0.5  # [s] answered in this process, after which it is known how long the map takes
 WORTH_WORKERS = 4.0  # [s] of work left below which starting workers takes longer than they save
@@ -60,17 +60,32 @@ def run_map(task: MapTask, path: str | Path, runner: Runner, progress: Callable[
         ZerorevError: a worker, or the cluster, is lost.
     """
     with MapStore(path, task) as store:
-        chunks, missing = store.chunks, store.missing()
-        done = task.cells - sum(prod(chunks.extent(n)) for n in missing)
+        missing = store.missing()
+        done = task.cells - sum(prod(store.chunks.extent(n)) for n in missing)
         if progress:
             progress(done, task.cells)
-        with closing(runner(task.question, chunks, missing)) as answered:
-            for number, values in answered:
-                store.write(number, values)
-                done += len(values["status"])
-                if progress:
-                    progress(done, task.cells)
-        return Ran(chunks.count, chunks.count - len(missing))
+        for cells in answering(store, missing, runner):
+            done += cells
+            if progress:
+                progress(done, task.cells)
+        return Ran(store.chunks.count, store.chunks.count - len(missing))
+
+
+def answering(store: MapStore, missing: Sequence[int], runner: Runner) -> Generator[int, None, None]:
+    """Answer chunks of a map that is open to be written, one after the other.
+
+    Args:
+        store: of the map.
+        missing: its chunks that are wanted.
+        runner: of whom the answers are had.
+
+    Yields:
+        how many cells the chunk has that was just written.
+    """
+    with closing(runner(store.task.question, store.chunks, missing)) as answered:
+        for number, values in answered:
+            store.write(number, values)
+            yield len(values["status"])
 
 
 def local(workers: int | None = None) -> Runner:
