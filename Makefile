@@ -20,7 +20,7 @@ demo: $(READY)  ## plan, check and export the three positions of the thesis, wit
 
 test: lint  ## what must hold; the tests marked long are left to `make long`
 	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/kernels -m "not long"
-	$(BIN)/pytest -q -n auto -m "not long"
+	$(BIN)/pytest -q -n auto --dist loadgroup -m "not long"
 
 long: $(READY)  ## the tests that take minutes
 	$(BIN)/pytest -q -m long

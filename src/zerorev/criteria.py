@@ -37,6 +37,7 @@ __all__ = [
     "ToolSpeedChange",
     "Travel",
     "compliance",
+    "from_singular",
     "manipulability",
     "measure",
     "objective_of",
@@ -236,12 +237,25 @@ def manipulability(robot: Robot, joints: Array) -> Array:
         robot: the arm.
         joints: controller angles [rad], shape (..., 6).
     """
+    return np.asarray(from_singular(robot, joints).prod(axis=-1))
+
+
+def from_singular(robot: Robot, joints: Array) -> Array:
+    """How far the shoulder, the elbow and the wrist are from singular [1], shape (..., 3): each 0 to 1.
+
+    They are the factors of `manipulability`: the share of its greatest reach at which the wrist centre lies from axis 1
+    as seen along axis 2, the sine between upper arm and forearm, and the sine of joint 5.
+
+    Args:
+        robot: the arm.
+        joints: controller angles [rad], shape (..., 6).
+    """
     arm = robot.arm
     _, q2, q3, _, q5, _ = np.moveaxis(joints * np.array(arm.sign) - np.array(arm.offset), -1, 0)
     forearm = np.hypot(arm.a2, arm.c3)
     elbow = (arm.c3 * np.sin(q3) + arm.a2 * np.cos(q3)) / forearm
     ahead = arm.a1 + arm.c2 * np.sin(q2) + arm.a2 * np.cos(q2 + q3) + arm.c3 * np.sin(q2 + q3)
-    return np.asarray(np.abs(elbow * ahead * np.sin(q5)) / (abs(arm.a1) + arm.c2 + forearm))
+    return np.asarray(np.abs(np.stack([ahead / (abs(arm.a1) + arm.c2 + forearm), elbow, np.sin(q5)], axis=-1)))
 
 
 @dataclass(frozen=True)

@@ -22,9 +22,9 @@ from zerorev.model.plan import Plan
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
 from zerorev.report import figures
+from zerorev.report.bracket import broken_at_poles
 from zerorev.report.figures import FIGURES, critical_rates, file_stems, joint_angles, twist_plane, write_figures
 from zerorev.report.figures.plane import SLATE
-from zerorev.report.figures.rates import broken_at_poles
 from zerorev.report.figures.style import JOINT_COLOURS, png, signed, spread_out
 
 

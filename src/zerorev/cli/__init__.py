@@ -13,7 +13,20 @@ from collections.abc import Sequence
 from cyclopts import CycloptsError
 
 # a file that defines commands joins them to the app when it is imported; the order is that of --help
-from zerorev.cli import advice, comparing, map_run, map_show, mapping, placing, planning, programs, reproduce, robots  # noqa: F401
+from zerorev.cli import (  # noqa: F401
+    advice,
+    comparing,
+    map_run,
+    map_show,
+    mapping,
+    placing,
+    planning,
+    programs,
+    replaying,
+    reproduce,
+    robots,
+    viewing,
+)
 from zerorev.cli.common import BAD_INPUT, BUG, FINE, FOUND, INTERRUPTED, PIPE_CLOSED, app
 from zerorev.errors import NotExportableError, ZerorevError
 from zerorev.report import terminal

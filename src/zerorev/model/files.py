@@ -29,6 +29,8 @@ from zerorev.model.validation import checked, inside
 
 __all__ = [
     "job_from_dict",
+    "job_from_text",
+    "plan_from_text",
     "plan_to_json",
     "read_job",
     "read_plan",
@@ -51,12 +53,12 @@ def tool_names() -> list[str]:
     return _shipped("tools")
 
 
-def read_robot(name_or_path: str | Path, folder: str | Path = ".") -> Robot:
+def read_robot(name_or_path: str | Path, folder: str | Path | None = ".") -> Robot:
     """A robot that ships with zerorev, by name, or one of a robot file.
 
     Args:
         name_or_path: a shipped name, or a path: it has a separator or ends in .yaml, .yml or .json.
-        folder: where a relative path starts.
+        folder: where a relative path starts; None: no file is opened, only what ships is taken.
 
     Raises:
         InputError: an unknown name, no such file, or a file that is not a robot.
@@ -72,12 +74,12 @@ def read_robot(name_or_path: str | Path, folder: str | Path = ".") -> Robot:
         )
 
 
-def read_tool(name_or_path: str | Path, folder: str | Path = ".") -> Tool:
+def read_tool(name_or_path: str | Path, folder: str | Path | None = ".") -> Tool:
     """A tool that ships with zerorev, by name, or one of a tool file.
 
     Args:
         name_or_path: a shipped name, or a path: it has a separator or ends in .yaml, .yml or .json.
-        folder: where a relative path starts.
+        folder: where a relative path starts; None: no file is opened, only what ships is taken.
 
     Raises:
         InputError: an unknown name, no such file, or a file that is not a tool.
@@ -107,6 +109,19 @@ def read_job(path: str | Path, *, depth_needed: bool = True, options: Mapping[st
     return _job(document, path.parent, path.stem, depth_needed=depth_needed)
 
 
+def job_from_text(text: str, file: str) -> Job:
+    """The job of a job file's text, for which no other file is opened: its robot and its tool ship with zerorev.
+
+    Args:
+        text: of the file; its tool may stand in it, its holes must.
+        file: how messages name it; a job without a name is called so.
+
+    Raises:
+        InputError: anything in it that cannot be used; a path.
+    """
+    return _job(yaml_document(text, file), None, Path(file).stem)
+
+
 def job_from_dict(mapping: Mapping[str, Any], folder: str | Path = ".") -> Job:
     """The job of a mapping with the keys of a job file; paths in it are relative to `folder`.
 
@@ -122,8 +137,20 @@ def read_plan(path: str | Path) -> Plan:
     Raises:
         InputError: another kind of file, cut short, altered, or with values that cannot be used.
     """
-    text = read_text(Path(path), "a plan file (JSON)")
-    document = part_document(text, str(path)) or json_document(text, str(path))
+    return plan_from_text(read_text(Path(path), "a plan file (JSON)"), str(path))
+
+
+def plan_from_text(text: str, file: str) -> Plan:
+    """The plan of a plan file's text, as `read_plan` has it.
+
+    Args:
+        text: of the file.
+        file: how messages name it.
+
+    Raises:
+        InputError: another kind of file, cut short, altered, or with values that cannot be used.
+    """
+    document = part_document(text, file) or json_document(text, file)
     form = checked(_form_of(document), document)
     with inside(document.file):
         return plan_from(form)
@@ -163,7 +190,8 @@ def write_schemas(folder: str | Path) -> None:
         write_text(Path(folder) / f"{name}.schema.json", json_text(schema))
 
 
-def _job(document: Document, folder: Path, name: str, *, depth_needed: bool = True) -> Job:
+def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bool = True) -> Job:
+    """The job of a document; paths in it start in the folder, or are refused where there is none."""
     form = checked(JobFile, document)
     with inside(document.where(("robot",))):
         robot = read_robot(form.robot, folder)
@@ -181,7 +209,9 @@ def _job(document: Document, folder: Path, name: str, *, depth_needed: bool = Tr
     return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name, reference)
 
 
-def _hole_forms(form: JobFile, document: Document, folder: Path, depth_needed: bool) -> list[tuple[str, HoleForm]]:
+def _hole_forms(
+    form: JobFile, document: Document, folder: Path | None, depth_needed: bool
+) -> list[tuple[str, HoleForm]]:
     """The holes of a job or of its CSV, each with where it stands."""
     if not isinstance(form.holes, str):
         listed = [(document.where(("holes", i)), hole) for i, hole in enumerate(form.holes)]
@@ -190,6 +220,9 @@ def _hole_forms(form: JobFile, document: Document, folder: Path, depth_needed: b
                 accepted = HoleForm.model_fields["depth_mm"].description or ""
                 raise InputError("is missing", where=f"{where}.depth_mm (hole {hole.id})", accepted=accepted)
         return listed
+    if folder is None:
+        accepted = "a list of holes in the job itself"
+        raise InputError("another file is not opened from here", where=document.where(("holes",)), accepted=accepted)
     path, holes = folder / form.holes, []
     with inside(document.where(("holes",))):
         text = read_text(path, "a CSV file of holes, or a list of holes")
@@ -209,12 +242,14 @@ def _shipped(kind: str) -> list[str]:
     return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
 
 
-def _named_document(name_or_path: str | Path, folder: str | Path, kind: str) -> Document:
+def _named_document(name_or_path: str | Path, folder: str | Path | None, kind: str) -> Document:
     """A shipped file by its name, or a file by its path."""
     name, shipped, what = str(name_or_path), _shipped(kind), kind.removesuffix("s")
     if name in shipped:
         resource = resources.files("zerorev.model") / kind / f"{name}.yaml"
         return yaml_document(resource.read_text(encoding="utf-8"), f"{name}.yaml")
+    if folder is None:
+        raise InputError(f"'{name}' does not ship with zerorev", accepted=", ".join(shipped))
     if "/" in name or "\\" in name or name.endswith((".yaml", ".yml", ".json")):
         path = Path(folder) / name
         return yaml_document(read_text(path, f"a {what} file (YAML)"), str(path))

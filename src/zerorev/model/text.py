@@ -26,6 +26,7 @@ __all__ = [
     "json_pieces",
     "json_text",
     "read_text",
+    "row_of",
     "yaml_document",
     "yaml_text",
 ]
@@ -303,14 +304,29 @@ def csv_rows(
             where = f"{file}, line {reader.line_num}"
             if not any(cell.strip() for cell in cells):
                 continue
-            if len(cells) != len(header):
-                raise InputError(f"{len(cells)} cells", where=where, accepted=f"{len(header)} cells")
-            row = {name: cell.strip() for name, cell in zip(header, cells, strict=True)}
-            given = [name for name in numbers if name in row]
-            values = {name: _number(row[name], f"{where}, column {name}") for name in given}
-            yield reader.line_num, {label: row[label]} | values
+            yield reader.line_num, row_of(header, cells, label, where)
     except csv.Error as error:
         raise InputError(str(error), where=f"{file}, line {reader.line_num}", accepted="CSV") from None
+
+
+def row_of(header: list[str], cells: list[str], label: str, where: str) -> dict[str, Any]:
+    """One row of a table by the names of its columns: one of text, the others of finite numbers.
+
+    Args:
+        header: names of the columns.
+        cells: of the row.
+        label: name of the text column.
+        where: how a message names the row, or an empty text where that is plain.
+
+    Raises:
+        InputError: a cell too many or too few, a cell that is not a number.
+    """
+    if len(cells) != len(header):
+        raise InputError(f"{len(cells)} cells", where=where, accepted=f"{len(header)} cells")
+    row = {name: cell.strip() for name, cell in zip(header, cells, strict=True)}
+    places = {name: f"{where}, column {name}" if where else f"column {name}" for name in row}
+    values = {name: _number(cell, places[name]) for name, cell in row.items() if name != label}
+    return {label: row[label]} | values
 
 
 def _number(text: str, where: str) -> float:

@@ -15,7 +15,7 @@ from zerorev.errors import InputError
 from zerorev.model.schema import Form
 from zerorev.model.text import Document, FieldPath
 
-__all__ = ["checked", "inside"]
+__all__ = ["checked", "inside", "problems"]
 
 F = TypeVar("F", bound=Form)
 
@@ -57,16 +57,30 @@ def checked(form: type[F], document: Document) -> F:
         raise InputError(what, where=document.file, accepted=f"format: {marker.description}")
     try:
         return form.model_validate(data)
+    except ValidationError:
+        wrong = [problem for _, problem in problems(form, document)]
+    with inside(document.file):
+        if len(wrong) == 1:
+            raise wrong[0]
+        more = [f"... and {len(wrong) - SHOWN} more"] if len(wrong) > SHOWN else []
+        listed = "".join(f"\n  - {problem}" for problem in [*wrong[:SHOWN], *more])
+        raise InputError(f"{len(wrong)} problems{listed}")
+
+
+def problems(form: type[Form], document: Document) -> list[tuple[FieldPath, InputError]]:
+    """What the form does not accept of a mapping, field by field, each with the path of its field.
+
+    Args:
+        form: what the mapping is to be.
+        document: with a mapping in it.
+    """
+    try:
+        form.model_validate(document.data)
     except ValidationError as error:
         # a misspelt key first: it explains the missing one
         details = sorted(error.errors(include_url=False), key=lambda detail: detail["type"] != "extra_forbidden")
-        problems = [_problem(form, document, detail) for detail in details]
-    with inside(document.file):
-        if len(problems) == 1:
-            raise problems[0]
-        more = [f"... and {len(problems) - SHOWN} more"] if len(problems) > SHOWN else []
-        listed = "".join(f"\n  - {problem}" for problem in [*problems[:SHOWN], *more])
-        raise InputError(f"{len(problems)} problems{listed}")
+        return [(_path(detail), _problem(form, document, detail)) for detail in details]
+    return []
 
 
 @contextmanager
@@ -79,8 +93,12 @@ def inside(where: str) -> Iterator[None]:
         raise InputError(error.what, where=within, accepted=error.accepted) from error
 
 
+def _path(detail: Any) -> FieldPath:
+    return tuple(part for part in detail["loc"] if not str(part).startswith("<"))
+
+
 def _problem(form: type[Form], document: Document, detail: Any) -> InputError:
-    path: FieldPath = tuple(part for part in detail["loc"] if not str(part).startswith("<"))
+    path = _path(detail)
     owner, field = _field(form, path)
     where = document.place(path) + _hole(document.data, path)
     if detail["type"] == "extra_forbidden":

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 
 from zerorev.errors import InputError, NotExportableError
@@ -11,9 +11,9 @@ from zerorev.program.krl import refuse_other_makers, to_krl
 from zerorev.program.krl_text import identifier
 from zerorev.program.neutral import Program, build_program
 from zerorev.program.preflight import preflight
-from zerorev.verify.check import verify_plan
+from zerorev.verify.check import verify_hole
 
-__all__ = ["CONTROLLERS", "Controller", "Exported", "export"]
+__all__ = ["CONTROLLERS", "Controller", "Exported", "export", "exporting"]
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,30 @@ def export(
         NotExportableError: the robot is another maker's, a hole has no verified motion, or the preflight found an
             error.
     """
+    steps = exporting(plan, controller, skip_failed=skip_failed, name=name, version=version)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            exported: Exported = end.value
+            return exported
+
+
+def exporting(
+    plan: Plan,
+    controller: str = "krl",
+    *,
+    skip_failed: bool = False,
+    name: str | None = None,
+    version: str | None = None,
+) -> Generator[None, None, Exported]:
+    """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
     if controller not in CONTROLLERS:
         raise InputError(f"unknown controller '{controller}'", where="controller", accepted=", ".join(CONTROLLERS))
     dialect = CONTROLLERS[controller]
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
-    program = build_program(_verified_anew(plan), skip_failed=skip_failed)
+    verified = yield from _verified_anew(plan)
+    program = build_program(verified, skip_failed=skip_failed)
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))
@@ -94,16 +113,15 @@ def export(
     return Exported(dialect.write(program, called, findings, version), findings, called, dialect.suffix)
 
 
-def _verified_anew(plan: Plan) -> Plan:
+def _verified_anew(plan: Plan) -> Generator[None, None, Plan]:
     """The plan with each hole that passed its check held to it again; a plan file may have been altered since."""
-    again = verify_plan(plan).holes
-    return replace(
-        plan,
-        holes=tuple(
-            fresh if old.verified is not None and old.verified.passed else old
-            for old, fresh in zip(plan.holes, again, strict=True)
-        ),
-    )
+    holes = []
+    for hole in plan.holes:
+        if hole.verified is not None and hole.verified.passed:
+            hole = replace(hole, verified=verify_hole(plan.robot, plan.tool, plan.settings, hole))
+        holes.append(hole)
+        yield
+    return replace(plan, holes=tuple(holes))
 
 
 def _sentence(finding: Finding) -> str:

@@ -62,7 +62,7 @@ class Shown:
     def _values(self, answer: HolePlan) -> Iterator[tuple[str, float]]:
         if answer.score is not None:
             yield "travel [deg]", float(np.rad2deg(answer.score.travel))
-        if slow := tables.slowest(answer, self._plan.settings):
+        if slow := tables.slowest(answer.score, self._plan.settings):
             yield "slowest joint [deg/mm]", float(np.rad2deg(slow[0]) / 1e3)
         if answer.deepest is not None:
             yield "deepest [mm]", answer.deepest * 1e3

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from zerorev.model.conversion import robot_data
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Level, Plan
+from zerorev.model.plan import Finding, HolePlan, Level, Plan, Score
 from zerorev.model.robot import Robot
 
 __all__ = [
@@ -62,7 +62,7 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         verdict = Text("FAILED", style="bold red")
     if hole.certificate is not None:
         verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
-    slow = slowest(hole, plan.settings)
+    slow = slowest(score, plan.settings)
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
         Text(_number(np.rad2deg(score.travel), 1)),
@@ -109,12 +109,12 @@ def hole_findings(hole: HolePlan) -> list[Finding]:
     return found
 
 
-def slowest(hole: HolePlan, settings: Settings) -> tuple[float, int] | None:
+def slowest(score: Score | None, settings: Settings) -> tuple[float, int] | None:
     """Rate [rad/m] and index of the slowest joint that does not reverse, by the rule of the motion threshold."""
-    if hole.score is None:
+    if score is None:
         return None
-    rates = hole.score.min_rate if settings.min_rate_rule == "pointwise" else hole.score.mean_rate
-    steady = [(float(rates[i]), i) for i in range(6) if hole.score.reversals_per_joint[i] == 0]
+    rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+    steady = [(float(rates[i]), i) for i in range(6) if score.reversals_per_joint[i] == 0]
     return min((pair for pair in steady if np.isfinite(pair[0])), default=None)
 
 

@@ -18,6 +18,7 @@ from rich.text import Text
 __all__ = [
     "busy",
     "complain",
+    "duration",
     "err",
     "note",
     "notices",
@@ -26,6 +27,7 @@ __all__ = [
     "print_json",
     "print_lines",
     "progress",
+    "rate_text",
     "replace_what_cannot_be_shown",
     "say",
 ]
@@ -114,7 +116,7 @@ def progress(what: str, total: int, each: str = "hole") -> Iterator[Callable[[in
 
         def render(self, task: Task) -> Text:
             """Of the last half minute."""
-            return Text("" if task.speed is None else f"{_rate(task.speed, each)}, left:")
+            return Text("" if task.speed is None else f"{rate_text(task.speed, each)}, left:")
 
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), Rate(""), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -144,15 +146,17 @@ class _Lines:
             return
         self.told = now
         rate = (done - self.began[1]) / (now - self.began[0])
-        left = f", {_duration((of - done) / rate)} left" if rate > 0 else ""
-        note(f"{self.what}: {done} of {of} {self.each}s, {_rate(rate, self.each)}{left}")
+        left = f", {duration((of - done) / rate)} left" if rate > 0 else ""
+        note(f"{self.what}: {done} of {of} {self.each}s, {rate_text(rate, self.each)}{left}")
 
 
-def _rate(per_second: float, each: str) -> str:
+def rate_text(per_second: float, each: str) -> str:
+    """So many of something a second, or so long for each."""
     return f"{per_second:.1f} {each}s/s" if per_second >= 1 or per_second == 0 else f"{1 / per_second:.1f} s/{each}"
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Hours, minutes and seconds, as far as they matter."""
     minutes, seconds = divmod(round(seconds), 60)
     return f"{minutes // 60} h {minutes % 60} min" if minutes >= 60 else f"{minutes} min {seconds} s"
 

@@ -2,27 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 from zerorev.errors import InputError
+from zerorev.jobs import unanswered
+from zerorev.maps.replan import job_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.model.profile import Profile
 
+if TYPE_CHECKING:
+    from zerorev.report.map_slice import MapSlice
+    from zerorev.report.urdf_meshes import Mesh
+
 __all__ = [
+    "Progress",
     "State",
     "Steered",
     "answered",
     "opened_job",
+    "opened_map",
     "opened_plan",
     "plan_of",
     "selected",
     "shown",
     "steered",
+    "undone",
+    "with_cell",
     "with_hole",
+    "with_holes",
     "with_settings",
     "without_hole",
 ]
@@ -44,6 +57,35 @@ class Steered:
 
 
 @dataclass(frozen=True)
+class Progress:
+    """Long work that is under way.
+
+    Attributes:
+        title: what is done, as the page says it.
+        done: how many things of it are finished.
+        total: of how many.
+        each: what is counted.
+        seconds: since it began.
+    """
+
+    title: str
+    done: int
+    total: int
+    each: str = "hole"
+    seconds: float = 0.0
+
+    @property
+    def rate(self) -> float | None:
+        """Things finished a second, or None before the first."""
+        return self.done / self.seconds if self.done and self.seconds else None
+
+    @property
+    def seconds_left(self) -> float | None:
+        """How long the rest takes at this rate [s], or None while nobody knows."""
+        return None if self.rate is None else (self.total - self.done) / self.rate
+
+
+@dataclass(frozen=True)
 class State:
     """What a page shows.
 
@@ -53,6 +95,10 @@ class State:
         selected: id of the hole that is looked at, or None.
         steered: the motion of the selected hole as the user has it in hand, or None: the planned one.
         strokes: whether the answers are of the strokes `asked` for or of each hole's `deepest`.
+        progress: of the long work under way, or None.
+        trouble: why the last work came to nothing, in one sentence, or None.
+        cells: a slice of a workspace map of the same robot and tool, or None.
+        meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
     """
 
     job: Job | None = None
@@ -60,6 +106,10 @@ class State:
     selected: str | None = None
     steered: Steered | None = None
     strokes: Strokes = "asked"
+    progress: Progress | None = None
+    trouble: str | None = None
+    cells: MapSlice | None = None
+    meshes: tuple[tuple[Mesh, ...], ...] | None = None
 
     @property
     def hole(self) -> Hole | None:
@@ -85,6 +135,15 @@ def opened_plan(plan: Plan) -> State:
     job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
     return State(job, answers, holes[0].id, strokes=plan.strokes)
+
+
+def opened_map(cells: MapSlice) -> State:
+    """A slice of a workspace map, and a job of its best cell alone; or of a cell in its middle, where none is best."""
+    job = job_of(cells.found, [cells.index(len(cells.row) // 2)])
+    with suppress(InputError):  # the cell in the middle is not reached, so it is shown as it is
+        hole = cells.hole(len(cells.row) // 2 if cells.best is None else cells.best, job.holes[0].depth)
+        job = replace(job, holes=(hole,))
+    return replace(opened_job(job), cells=cells)
 
 
 def selected(state: State, hole: str) -> State:
@@ -124,10 +183,12 @@ def answered(state: State, *answers: HolePlan, strokes: Strokes = "asked") -> St
         each.hole.id: each for each in answers if each.hole.id in asked and _same(each, asked[each.hole.id], strokes)
     }
     kept = state.answers if strokes == state.strokes else NONE
-    let_go = state.selected in fresh
-    return replace(
-        state, answers=MappingProxyType({**kept, **fresh}), strokes=strokes, steered=None if let_go else state.steered
-    )
+    job = state.job
+    if strokes == "deepest" and fresh:
+        deep = {key: each.hole for key, each in fresh.items() if each.hole.profile is None}  # not those kept by hand
+        job = replace(job, holes=tuple(deep.get(hole.id, hole) for hole in job.holes))
+    in_hand = None if state.selected in fresh else state.steered
+    return replace(state, job=job, answers=MappingProxyType({**kept, **fresh}), strokes=strokes, steered=in_hand)
 
 
 def with_hole(state: State, hole: Hole, instead_of: str | None = None) -> State:
@@ -144,6 +205,37 @@ def with_hole(state: State, hole: Hole, instead_of: str | None = None) -> State:
     return replace(
         state, job=replace(state.job, holes=holes), answers=MappingProxyType(answers), selected=hole.id, steered=None
     )
+
+
+def with_cell(state: State, cell: int) -> State:
+    """The hole of a cell of the map is added to the job, or is there already; it is selected.
+
+    Args:
+        state: with a map.
+        cell: its number in the slice that is shown.
+
+    Raises:
+        InputError: no such cell, or one that cannot be drilled, and why.
+    """
+    if state.cells is None or state.job is None:
+        raise InputError("no map is shown", where="cell", accepted="a cell of a map")
+    hole = state.cells.hole(cell, state.job.holes[0].depth if state.hole is None else state.hole.depth)
+    there = next((each for each in state.job.holes if each.id == hole.id), None)
+    if there is not None and there.depth == hole.depth:
+        return selected(state, hole.id)
+    return with_hole(state, hole, None if there is None else hole.id)
+
+
+def with_holes(state: State, holes: Sequence[Hole]) -> State:
+    """Holes are added, as out of a table; the first of them is selected.
+
+    Raises:
+        InputError: nothing is opened yet, no hole is given, or two holes have the same id.
+    """
+    if state.job is None or not holes:
+        raise InputError("there is nothing to add", where="holes", accepted="one hole or more, to a job opened before")
+    job = replace(state.job, holes=(*state.job.holes, *holes))
+    return replace(state, job=job, selected=holes[0].id, steered=None)
 
 
 def without_hole(state: State, hole: str) -> State:
@@ -174,6 +266,18 @@ def with_settings(state: State, settings: Settings) -> State:
     return replace(state, job=replace(state.job, settings=settings), answers=NONE, steered=None)
 
 
+def undone(state: State, before: State) -> State:
+    """The state before an edit, with those answers found since that hold for it, too."""
+    before = replace(before, progress=state.progress, trouble=state.trouble)
+    now, old = state.job, before.job
+    if now is None or old is None or now.robot is not old.robot or now.tool is not old.tool:
+        return before
+    before = replace(before, cells=state.cells)
+    if state.strokes != before.strokes or now.settings is not old.settings:
+        return before
+    return replace(answered(before, *state.answers.values(), strokes=before.strokes), steered=before.steered)
+
+
 def plan_of(state: State) -> Plan:
     """The plan of all holes that have an answer, as the command line would write it.
 
@@ -184,17 +288,17 @@ def plan_of(state: State) -> Plan:
         raise InputError("nothing is planned yet", where="plan", accepted="a planned hole or more")
     job = state.job
     holes = tuple(state.answers[hole.id] for hole in job.holes if hole.id in state.answers)
-    from zerorev.jobs import unanswered
-
     return unanswered(job, state.strokes, holes)
 
 
 def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:
     """Whether an answer is of this very hole, but for the depth where the deepest was asked for."""
     hole = answer.hole
+    by_hand = hole.profile is not None and asked.profile is None
     return (
         bool((hole.target == asked.target).all())
         and bool((hole.direction == asked.direction).all())
         and bool((hole.psi_zero == asked.psi_zero).all())
         and (strokes == "deepest" or hole.depth == asked.depth)
+        and (by_hand or hole.branch == asked.branch)
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -15,7 +15,7 @@ from zerorev.report.figures.plane import twist_plane
 from zerorev.report.figures.rates import critical_rates
 from zerorev.report.figures.style import png
 
-__all__ = ["FIGURES", "critical_rates", "file_stems", "joint_angles", "twist_plane", "write_figures"]
+__all__ = ["FIGURES", "critical_rates", "drawn", "file_stems", "joint_angles", "twist_plane", "write_figures"]
 
 FIGURES: dict[str, Callable[[Plan, HolePlan], Figure]] = {
     "joint_angles": joint_angles,
@@ -40,16 +40,21 @@ def write_figures(plan: Plan, folder: Path, progress: Callable[[int, int], None]
         OutputError: the folder cannot be made, or a file cannot be written.
     """
     make_folder(folder)
-    drawn = [(hole, stem) for hole, stem in zip(plan.holes, file_stems(plan), strict=True) if hole.motion is not None]
     files = []
-    for done, (hole, stem) in enumerate(drawn):
-        for name, draw in FIGURES.items():
-            path = folder / f"{stem}_{name}.png"
-            write_bytes(path, png(draw(plan, hole)))
-            files.append(path)
-        if progress is not None:
-            progress(done + 1, len(drawn))
+    for n, (name, picture) in enumerate(drawn(plan), 1):
+        write_bytes(folder / name, picture)
+        files.append(folder / name)
+        if progress is not None and n % len(FIGURES) == 0:
+            progress(n // len(FIGURES), sum(hole.motion is not None for hole in plan.holes))
     return files
+
+
+def drawn(plan: Plan) -> Iterator[tuple[str, bytes]]:
+    """The name and the content (PNG) of each figure of each hole that has a motion."""
+    for hole, stem in zip(plan.holes, file_stems(plan), strict=True):
+        if hole.motion is not None:
+            for name, draw in FIGURES.items():
+                yield f"{stem}_{name}.png", png(draw(plan, hole))
 
 
 def file_stems(plan: Plan) -> list[str]:

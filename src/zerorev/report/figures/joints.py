@@ -15,11 +15,11 @@ from zerorev.model.plan import Event, HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
 from zerorev.motion import joints_along, sample_distances
 from zerorev.report.figures import style
+from zerorev.report.joint_range import joint_range
 
 __all__ = ["joint_angles"]
 
 SAMPLES = 600
-LEAST_SPAN = 1.0  # [deg] a joint that hardly moves is drawn as one that hardly moves
 REVERSAL = {"marker": "X", "markersize": 8.0, "markeredgecolor": "white", "markeredgewidth": 0.9, "linestyle": "none"}
 
 
@@ -126,20 +126,15 @@ def _one_joint(axes: Axes, plan: Plan, profile: Profile, i: int, planned: Curve,
 
 def _frame(axes: Axes, values: Array, limits: Array) -> None:
     """The range of the angle axis; a joint limit is shown where the motion comes near it."""
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    span = max(high - low, LEAST_SPAN)
-    middle = (low + high) / 2
-    low, high = min(low, middle - span / 2), max(high, middle + span / 2)
-    for limit, distance, align in ((limits[0], low - limits[0], "bottom"), (limits[1], limits[1] - high, "top")):
-        if distance > max(0.5 * span, 3.0):
+    shown = joint_range(values, *limits)
+    for limit, align in ((shown.lower, "bottom"), (shown.upper, "top")):
+        if limit is None:
             continue
-        low, high = min(low, limit), max(high, limit)
         axes.axhline(limit, color="black", linewidth=1.6, zorder=1)
         axes.annotate(f"limit {style.signed(limit, 0)}", (0.02, limit), xycoords=("axes fraction", "data"), size=8,
                       xytext=(0, 2 if align == "bottom" else -2), textcoords="offset points", va=align,
                       color="black")  # fmt: skip
-    pad = 0.1 * (high - low)
-    axes.set_ylim(low - pad, high + pad)
+    axes.set_ylim(shown.low, shown.high)
 
 
 def _end_labels(axes: Axes, ends: tuple[float, float], ink: str) -> None:

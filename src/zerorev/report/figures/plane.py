@@ -15,8 +15,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.report.field import Field, field
 from zerorev.report.figures import style
-from zerorev.report.figures.field import Field, field
 
 __all__ = ["twist_plane"]
 
@@ -55,7 +55,7 @@ def twist_plane(plan: Plan, hole: HolePlan) -> Figure:
     corner = profile.standoff[profile.corner]
     low, high = _spin_range(profile.psi)
     patch = field(
-        plan, hole.hole, motion.branch, np.linspace(corner, profile.standoff.max(), STANDOFFS),
+        plan.robot, plan.tool, hole.hole, motion.branch, np.linspace(corner, profile.standoff.max(), STANDOFFS),
         np.linspace(low, high, int(np.ceil((high - low) / SPIN_STEP)) + 1),
     )  # fmt: skip
     # signed path distance from the corner [mm]: the plunge on the left, the retract on the right

@@ -1,0 +1,49 @@
+"""`zerorev replay`: the motions of a plan as one HTML file to be sent around."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from zerorev.cli.common import FINE, app, check_outputs, need
+from zerorev.report import terminal
+
+__all__ = ["replay"]
+
+
+@app.command
+def replay(
+    plan: Path,
+    /,
+    *,
+    output: Annotated[Path, Parameter(name=["--output", "-o"])],
+    hole: tuple[str, ...] = (),
+    urdf: Path | None = None,
+) -> int:
+    """Write the motions of a plan as one HTML file that plays them in any browser, with no network.
+
+    Args:
+        plan: The plan file (JSON).
+        output: The HTML file.
+        hole: Only this hole; may be given several times. By default all holes of the plan.
+        urdf: Description of the plan's robot (URDF), whose meshes are shown; they lie in the same folder.
+    """
+    from zerorev.model.files import read_plan
+    from zerorev.model.output import write_text
+
+    need("nicegui", "NiceGUI, whose three.js draws the robot,", "replay", "view")
+    if urdf is not None:
+        need("trimesh", "trimesh", "--urdf", "view")
+    check_outputs((output,), plan, *([urdf] if urdf else []))
+    answer = read_plan(plan)
+
+    from zerorev.report.replay import replay_page
+    from zerorev.report.urdf_meshes import read_meshes
+
+    with terminal.busy("writing"):
+        page = replay_page(answer, hole or None, None if urdf is None else read_meshes(urdf, answer.robot))
+    write_text(output, page)
+    terminal.say(f"replay written to {output}; it opens in a browser, from disk")
+    return FINE

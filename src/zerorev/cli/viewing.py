@@ -1,0 +1,51 @@
+"""`zerorev view`: the app, a page on the user's own machine."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from zerorev.cli.common import FINE, Whole, app, need
+from zerorev.report import terminal
+
+__all__ = ["view"]
+
+
+@app.command
+def view(
+    what: Path | None = None, /, *, port: Whole | None = None, no_browser: bool = False, urdf: Path | None = None
+) -> int:
+    """See the holes and steer the motions: open the app in the browser. It is served to this machine alone.
+
+    The address holds a token, without which the app answers to nobody. It runs until Ctrl-C.
+
+    Args:
+        what: A job file (YAML), a plan file (JSON) or the folder of a workspace map (zarr); by default a demo, the
+            three positions at which the thesis drilled.
+        port: The port to serve it on; by default 8780, or a free one where that is taken.
+        no_browser: Only print the address, and open nothing.
+        urdf: Description of the robot of what is opened (URDF), whose meshes are shown; they lie in the same folder.
+    """
+    need("nicegui", "nicegui", "view", "view")
+    if urdf is not None:
+        need("trimesh", "trimesh", "--urdf", "view")
+
+    from zerorev.web.opening import demo, opened, with_meshes
+
+    with terminal.busy("opening"):
+        state = demo() if what is None else opened(what)
+        state = state if urdf is None else with_meshes(state, urdf)
+        if urdf is not None and state.job is not None:
+            from zerorev.report.urdf_meshes import read_meshes
+
+            state = replace(state, meshes=read_meshes(urdf, state.job.robot))
+
+    from zerorev.web.server import serve
+
+    serve(state, port=port, browser=not no_browser, say=_say)
+    return FINE
+
+
+def _say(address: str) -> None:
+    terminal.say(address)
+    terminal.note("the app is served to this machine alone; Ctrl-C ends it")

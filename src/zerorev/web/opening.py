@@ -1,0 +1,75 @@
+"""From a file, or what was uploaded of one, to what a page shows of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib import resources
+from pathlib import Path
+
+from zerorev.model.files import job_from_text, plan_from_text, read_job, read_plan
+from zerorev.model.text import read_text
+from zerorev.web.state import State, opened_job, opened_map, opened_plan
+
+__all__ = ["demo", "opened", "opened_text", "with_meshes"]
+
+ACCEPTED = "a job file (YAML), a plan file (JSON) or a folder of a workspace map (zarr)"
+
+
+def demo() -> State:
+    """The three positions at which the thesis drilled, not planned yet."""
+    text = (resources.files("zerorev.web") / "demo.yaml").read_text(encoding="utf-8")
+    return opened_job(job_from_text(text, "demo.yaml"))
+
+
+def opened(path: Path) -> State:
+    """A job, a plan or a map that the user of this machine named.
+
+    Args:
+        path: of a job file, whose relative paths start beside it; of a plan file; or of a map's folder.
+
+    Raises:
+        InputError: none of these, or one that cannot be used.
+    """
+    if path.is_dir():
+        return _opened_map(path)
+    if _is_plan(read_text(path, ACCEPTED), path.name):
+        return opened_plan(read_plan(path))
+    return opened_job(read_job(path))
+
+
+def opened_text(text: str, name: str) -> State:
+    """A job or a plan that came from the browser; no file of this machine is opened but what ships with zerorev.
+
+    Args:
+        text: of the file.
+        name: that it had, for messages.
+
+    Raises:
+        InputError: neither, or one that cannot be used.
+    """
+    if _is_plan(text, name):
+        return opened_plan(plan_from_text(text, name))
+    return opened_job(job_from_text(text, name))
+
+
+def with_meshes(state: State, urdf: Path) -> State:
+    """The robot is shown with the meshes of a URDF file that the user of this machine named.
+
+    Raises:
+        InputError: not a URDF file, or not one of this robot.
+    """
+    from zerorev.report.urdf_meshes import read_meshes
+
+    return state if state.job is None else replace(state, meshes=read_meshes(urdf, state.job.robot))
+
+
+def _is_plan(text: str, name: str) -> bool:
+    """Whether a text is JSON, as plans are and jobs are not."""
+    return text.lstrip().startswith("{") and not name.lower().endswith((".yaml", ".yml"))
+
+
+def _opened_map(path: Path) -> State:
+    from zerorev.maps.workspace import read_workspace_map
+    from zerorev.report.map_slice import slice_of
+
+    return opened_map(slice_of(read_workspace_map(path)))

@@ -1,0 +1,120 @@
+"""The page: which parts it has, how they are framed, and when it is drawn anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from nicegui import ui
+
+from zerorev.web.computing import Work, plan_selected
+from zerorev.web.session import Session
+from zerorev.web.state import State
+from zerorev.web.throttle import throttled
+from zerorev.web.views.bracket import bracket
+from zerorev.web.views.cell import cell
+from zerorev.web.views.compute import compute
+from zerorev.web.views.curves import curves
+from zerorev.web.views.downloads import downloads
+from zerorev.web.views.empty import empty
+from zerorev.web.views.header import header
+from zerorev.web.views.holes import holes
+from zerorev.web.views.map_panel import map_panel
+from zerorev.web.views.summary import summary
+from zerorev.web.views.twist_map import twist_map
+
+__all__ = ["build"]
+
+# what beyond a joint's limit is drawn with
+HATCH = """<svg width="0" height="0" style="position:absolute" aria-hidden="true"><defs>
+<pattern id="zr-hatch" width="5" height="5" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">
+<line x1="0" y1="0" x2="0" y2="5" style="stroke:var(--zr-muted)" stroke-width="1.2"/></pattern></defs></svg>"""
+
+# Ctrl-Z, but in a field, which has an undo of its own
+UNDO = """event => {
+    if (event.key !== "z" || !(event.ctrlKey || event.metaKey)) return;
+    if (event.target.closest("input, textarea, select")) return;
+    event.preventDefault();
+    emit();
+}"""
+
+
+def build(session: Session, work: Work) -> None:
+    """Draw the page of a session in the current slot.
+
+    Args:
+        session: what is shown; it may have been shown before, as after a reload.
+        work: what its long computations run in.
+    """
+    ui.html(HATCH, sanitize=False)
+    page = ui.element("div").classes("zr-page").props('tabindex="-1" data-testid="page"')
+    page.on("keydown", session.undo, js_handler=UNDO)
+
+    def draw() -> None:
+        session.unwatch()
+        session.watch(changed)
+        page.clear()
+        with page:
+            header(session)
+            if session.state.job is None:
+                empty(session)
+            else:
+                _workbench(session, work)
+
+    def changed(before: State, after: State) -> None:
+        if _machine(before) is not _machine(after):  # another file is opened: no part of the page is as it was
+            draw()
+        if before.hole is not after.hole:
+            soon()
+
+    def plan_what_is_looked_at() -> None:
+        if session.state.hole is not None and session.state.answer is None:
+            plan_selected(work)
+
+    soon = throttled(plan_what_is_looked_at, 0.0)  # once all views have been told of the hole
+    draw()
+    soon()
+
+
+def _machine(state: State) -> object:
+    return state.job and state.job.robot
+
+
+def _workbench(session: Session, work: Work) -> None:
+    with ui.element("main").classes("zr-workbench"):
+        with ui.element("section").classes("zr-panel zr-bar").props('aria-label="the selected hole"'):
+            summary(session)
+            with ui.element("div").classes("zr-doings"):
+                compute(session, work)
+                downloads(session, work)
+        with _panel("twist-map", "Twist map"):
+            twist_map(session)
+        with _panel("cell", "Cell"):
+            cell(session)
+        with _panel("bracket", "Bracket"):
+            bracket(session)
+        with _panel("curves", "Joint angles along the path"):
+            curves(session)
+        with ui.element("section").classes("zr-panel zr-holes").props('aria-label="holes, and a map around them"'):
+            _tabs(session, work)
+
+
+def _tabs(session: Session, work: Work) -> None:
+    """The holes, and behind them the workspace map, from which holes can be taken."""
+    with ui.tabs().props("dense no-caps inline-label align=left :breakpoint=0").classes("zr-tabs") as tabs:
+        first = ui.tab("holes", "Holes").props('data-testid="tab-holes"')
+        second = ui.tab("map", "Workspace map").props('data-testid="tab-map"')
+    with ui.tab_panels(tabs, value=first, animated=False, keep_alive=True).classes("zr-tab-panels"):
+        with ui.tab_panel(first).classes("zr-tab"):
+            holes(session)
+        with ui.tab_panel(second).classes("zr-tab zr-scrolls"):
+            map_panel(session, work)
+
+
+@contextmanager
+def _panel(name: str, title: str) -> Iterator[None]:
+    """A framed part of the page, with its name."""
+    with ui.element("section").classes(f"zr-panel zr-{name}").props(f'aria-labelledby="title-{name}"'):
+        with ui.element("div").classes("zr-title"):
+            ui.html(f'<h2 id="title-{name}">{title}</h2>', sanitize=False)
+        yield

@@ -1,0 +1,11 @@
+// Said by the server when it ends: the page stays readable, and does not knock at a closed door.
+window.zerorevEnded = () => {
+  window.socket?.io?.reconnection(false);
+  document.getElementById("popup")?.remove();
+  const note = document.createElement("div");
+  note.className = "zr-ended";
+  note.setAttribute("role", "alert");
+  note.dataset.testid = "ended";
+  note.textContent = "The app has ended. What is on this page can still be read; zerorev view starts it again.";
+  document.body.append(note);
+};

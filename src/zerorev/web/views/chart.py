@@ -1,0 +1,81 @@
+"""What all charts of the page share: their look, in the colours of the page, and nothing that moves by itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from nicegui import ui
+
+from zerorev.model._arrays import Array
+from zerorev.report.palette import DASHES
+
+__all__ = ["INK", "LINE", "MUTED", "SURFACE", "axis", "chart", "dashes", "pairs", "redraw"]
+
+# drawn as SVG, so that the colours follow the theme of the page without being drawn anew
+INK, MUTED, LINE, SURFACE = (f"var(--zr-{name})" for name in ("ink", "muted", "line", "surface"))
+MINUS = "value => String(value).replace('-', '\u2212')"
+TEXT = {"color": MUTED, "fontSize": 11, "fontFamily": "inherit"}
+
+
+def chart(options: dict[str, Any], words: str, name: str) -> ui.echart:
+    """A chart that fills its panel.
+
+    Args:
+        options: of ECharts.
+        words: what it shows, for those who cannot see it.
+        name: for tests.
+    """
+    drawn = ui.echart(_still(options), renderer="svg").classes("zr-chart")
+    drawn.props["aria-label"], drawn.props["data-testid"] = words, name
+    drawn.props["role"] = "img"
+    return drawn
+
+
+def redraw(drawn: ui.echart, options: dict[str, Any]) -> None:
+    """Show something else in a chart: of as many series as before."""
+    drawn.props["options"] = _still(options)
+
+
+def _still(options: dict[str, Any]) -> dict[str, Any]:
+    return {"animation": False, "textStyle": TEXT, "backgroundColor": "transparent"} | options
+
+
+def axis(name: str = "", gap: int = 0, **options: Any) -> dict[str, Any]:
+    """A thin axis with a faint grid.
+
+    Args:
+        name: with the unit.
+        gap: between it and the axis [px].
+        options: of ECharts.
+    """
+    return {
+        "name": name,
+        "nameLocation": "middle",
+        "nameGap": gap,
+        "type": "value",
+        "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": MUTED, "width": 1}},
+        "axisTick": {"show": True, "length": 3, "lineStyle": {"color": MUTED}},
+        "axisLabel": {**TEXT, ":formatter": MINUS, "hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
+        "splitLine": {"lineStyle": {"color": LINE, "width": 1}},
+        "nameTextStyle": TEXT,
+        **options,
+    }
+
+
+def dashes(joint: int, width: float = 2.0) -> str | list[float]:
+    """How the line of a joint (0..5) is broken, as in the figures; lengths in px."""
+    dash = DASHES[joint]
+    return "solid" if isinstance(dash, str) else [width * length for length in dash[1]]
+
+
+def pairs(x: Array, y: Array, digits: int) -> list[list[float | None]]:
+    """Points (N,) as a chart takes them; a gap where one is not known.
+
+    Args:
+        x: across, shape (N,).
+        y: upwards, shape (N,).
+        digits: that are drawn.
+    """
+    known = np.round(np.column_stack([x, y]), digits).tolist()
+    return [[across, up if np.isfinite(up) else None] for across, up in known]

@@ -1,0 +1,232 @@
+"""What can be taken away: the plan, the program with what its preflight found, figures, the replay, the job."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import nullcontext
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from zerorev.errors import NotExportableError, ZerorevError
+from zerorev.model.files import plan_to_json
+from zerorev.model.job_data import job_files
+from zerorev.model.plan import Finding, Plan
+from zerorev.model.text import json_text
+from zerorev.program.export import Exported, exporting
+from zerorev.web.computing import Work
+from zerorev.web.session import Session
+from zerorev.web.state import State, plan_of
+from zerorev.web.views.fields import form
+from zerorev.web.views.opener import failed
+
+__all__ = ["downloads"]
+
+
+def downloads(session: Session, work: Work) -> None:
+    """Draw the menu.
+
+    Args:
+        session: whose plan is taken away.
+        work: of the session, for what takes long to make.
+    """
+    with (
+        ui.button("Download", icon="download").classes("zr-take").props('outline no-caps dense data-testid="download"'),
+        ui.menu().props('aria-label="download"'),
+    ):
+        _entry("Plan (JSON)", "download-plan", lambda: _plan(session))
+        _entry("Robot program (KRL) …", "download-krl", lambda: _program(session, work))
+        _entry("Figures of this hole (zip)", "download-figures", lambda: _figures(session, work, one=True))
+        _entry("Figures of all holes (zip)", "download-all-figures", lambda: _figures(session, work, one=False))
+        _entry("Replay (HTML, opens anywhere)", "download-replay", lambda: _replay(session, work))
+        ui.separator()
+        _entry("Job (YAML)", "download-job", lambda: _job(session))
+
+
+def _entry(text: str, name: str, wish: Callable[[], None]) -> None:
+    def asked() -> None:
+        try:
+            wish()
+        except ZerorevError as error:
+            failed(str(error))
+
+    ui.menu_item(text, on_click=asked).props(f'data-testid="{name}"')
+
+
+# --- at once ----------------------------------------------------------------------------------------------------------
+
+
+def _plan(session: Session) -> None:
+    plan = plan_of(session.state)
+    ending = "plan" if plan.strokes == "asked" else "depths"
+    ui.download.content(json_text(plan_to_json(plan)), f"{_stem(plan.name)}.{ending}.json", "application/json")
+
+
+def _job(session: Session) -> None:
+    job = session.state.job
+    if job is None:
+        return
+    files = job_files(job)
+    if len(files) == 1:
+        ((name, text),) = files.items()
+        ui.download.content(text, name, "application/yaml")
+    else:
+        ui.download.content(_zipped((name, text.encode()) for name, text in files.items()), f"{_stem(job.name)}.zip")
+
+
+# --- in a while -------------------------------------------------------------------------------------------------------
+
+
+def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None:
+    """Make the program, then show what its preflight found, or why there is none."""
+    plan = plan_of(session.state)
+
+    def run() -> Iterator[Exported | NotExportableError | None]:
+        try:
+            yield (yield from exporting(plan, skip_failed=skip_failed))
+        except NotExportableError as error:
+            yield error
+
+    def ready(made: Exported | NotExportableError) -> None:
+        if isinstance(made, Exported):
+            _offer(made)
+        else:
+            _refused(made, lambda: _program(session, work, skip_failed=True), can_skip=not skip_failed)
+
+    _make(session, work, "checking for the program", len(plan.holes) + 1, run, ready, each="hole")
+
+
+def _figures(session: Session, work: Work, *, one: bool) -> None:
+    plan = plan_of(session.state)
+    if one:
+        plan = _only(plan, session.state)
+
+    from zerorev.report.figures import FIGURES, drawn
+
+    def run() -> Iterator[bytes | None]:
+        pictures = []
+        for picture in drawn(plan):
+            pictures.append(picture)
+            yield None
+        yield _zipped(pictures)
+
+    count = len(FIGURES) * sum(hole.motion is not None for hole in plan.holes)
+    save = partial(ui.download.content, filename=f"{_stem(plan.name)}.figures.zip", media_type="application/zip")
+    _make(session, work, "drawing", count + 1, run, save, each="figure")
+
+
+def _replay(session: Session, work: Work) -> None:
+    from zerorev.report.replay import replay_page
+
+    plan, meshes = plan_of(session.state), session.state.meshes
+    save = partial(ui.download.content, filename=f"{_stem(plan.name)}.replay.html", media_type="text/html")
+    _make(session, work, "making the replay", 1, lambda: iter([replay_page(plan, meshes=meshes)]), save)
+
+
+def _make(
+    session: Session,
+    work: Work,
+    title: str,
+    total: int,
+    run: Callable[[], Iterator[Any]],
+    ready: Callable[[Any], None],
+    each: str = "file",
+) -> None:
+    """Make something in a thread; its last result is handed to the page."""
+
+    def take(state: State, found: Sequence[Any]) -> State:
+        if found[-1] is not None:
+            if session.page is nullcontext:
+                raise ZerorevError(f"{title}: ready while the page was away; ask for it again")
+            with session.page():
+                ready(found[-1])
+        return state
+
+    if not work.start(title, total, run, take, each=each):
+        ui.notify("Something else is under way; wait for it, or cancel it.", classes="zr-notify")
+
+
+# --- the program's dialog ---------------------------------------------------------------------------------------------
+
+
+def _offer(program: Exported) -> None:
+    """Show what the preflight found, then hand the program out."""
+    name = f"{program.name}{program.suffix}"
+
+    def save() -> None:
+        ui.download.content(program.text, name, "text/plain")
+        dialog.close()
+
+    dialog, inside, _ = form(f"Before {name} runs", "preflight", wide=True)
+    with inside:
+        if program.findings:
+            ui.label("The preflight found:")
+            _list(program.findings)
+        else:
+            ui.label("The preflight found nothing to say.")
+        ui.label("The program has not run on a robot yet: try it in T1 first.").classes("zr-muted")
+        with ui.element("div").classes("zr-ends"):
+            ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
+            ui.button(f"Download {name}", icon="download", on_click=save).props(
+                'unelevated no-caps autofocus data-testid="save-program"'
+            )
+    dialog.on("hide", dialog.delete)
+    dialog.open()
+
+
+def _refused(error: NotExportableError, leave_out: Callable[[], None], *, can_skip: bool) -> None:
+    """Say why there is no program, and offer one without these holes."""
+
+    def without() -> None:
+        dialog.close()
+        leave_out()
+
+    dialog, inside, _ = form("This plan must not become a program", "refused", wide=True)
+    with inside:
+        with ui.element("ul").classes("zr-reasons"):
+            for reason in error.reasons:
+                with ui.element("li"):
+                    ui.label(reason)
+        with ui.element("div").classes("zr-ends"):
+            ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
+            if can_skip:
+                ui.button("Leave these out", on_click=without).props('unelevated no-caps data-testid="leave-out"')
+    dialog.on("hide", dialog.delete)
+    dialog.open()
+
+
+def _list(findings: Sequence[Finding]) -> None:
+    with ui.element("ul").classes("zr-reasons"):
+        for finding in findings:
+            with ui.element("li").classes(f"zr-{finding.level}"):
+                ui.icon(finding.level).props('aria-hidden="true"')
+                where = "" if finding.hole is None else f"{finding.hole}: "
+                ui.label(f"{finding.level}: {where}{finding.message}")
+
+
+# --- files ------------------------------------------------------------------------------------------------------------
+
+
+def _only(plan: Plan, state: State) -> Plan:
+    holes = tuple(hole for hole in plan.holes if hole.hole.id == state.selected)
+    if not holes:
+        raise ZerorevError("this hole is not planned yet")
+    return replace(plan, holes=holes)
+
+
+def _zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in files:
+            archive.writestr(name, content)
+    return held.getvalue()
+
+
+def _stem(name: str) -> str:
+    """A file name's beginning, in letters that every file system takes."""
+    return re.sub(r"[^A-Za-z0-9.-]+", "_", name).strip("._") or "zerorev"

@@ -1,0 +1,76 @@
+"""The line on top: what is opened, and what can be done with the page as a whole."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from zerorev.kinematics import wrist_offset
+from zerorev.model.job import Job
+from zerorev.web.session import Session
+from zerorev.web.state import State
+from zerorev.web.views.opener import open_button
+from zerorev.web.views.settings_form import settings_dialog
+
+__all__ = ["header"]
+
+THEMES = ((None, "brightness_auto", "as the system"), (False, "light_mode", "light"), (True, "dark_mode", "dark"))
+
+
+def header(session: Session) -> None:
+    """Draw the header.
+
+    Args:
+        session: whose job is named.
+    """
+    with ui.element("header").classes("zr-header"):
+        ui.html('<span class="zr-mark" aria-hidden="true"></span><span class="zr-word">zerorev</span>', sanitize=False)
+        if session.state.job is None:
+            ui.element("span").classes("zr-spring")
+        else:
+            _of_a_job(session)
+            open_button(session, "open", "zr-quiet")
+        _theme_button(session)
+
+
+def _of_a_job(session: Session) -> None:
+    with ui.element("div").classes("zr-job"):
+        name, machine = ui.label().classes("zr-job-name"), ui.label().classes("zr-job-machine")
+    ui.element("span").classes("zr-spring")
+    settings = settings_dialog(session)
+    back = ui.button("Undo", icon="undo", on_click=session.undo, color=None).classes("zr-quiet").props("flat no-caps")
+    back.props('aria-label="take the last edit back (Ctrl-Z)" data-testid="undo"').tooltip("take back (Ctrl-Z)")
+    change = ui.button("Settings", icon="tune", on_click=settings, color=None).classes("zr-quiet").props("flat no-caps")
+    change.props('data-testid="settings"')
+
+    def draw(job: Job) -> None:
+        name.set_text(job.name)
+        robot = f"{job.robot.manufacturer} {job.robot.model}".strip() or job.robot.name
+        offset = wrist_offset(job.robot, job.tool) * 1e3
+        machine.set_text(f"{robot}  ·  {job.tool.name}, {offset:.4g} mm off the wrist  ·  {job.settings.legs} legs")
+        back.set_enabled(session.can_undo)
+
+    def changed(before: State, after: State) -> None:
+        if after.job is not None and before.job is not after.job:
+            draw(after.job)
+
+    if session.state.job is not None:
+        draw(session.state.job)
+    session.watch(changed)
+
+
+def _theme_button(session: Session) -> None:
+    """Goes round: as the system, light, dark."""
+    dark = ui.dark_mode(session.theme)
+    button = ui.button(color=None).classes("zr-quiet").props('flat round dense data-testid="theme"')
+
+    def draw() -> None:
+        _, icon, words = next(theme for theme in THEMES if theme[0] is session.theme)
+        button.props(f'icon={icon} aria-label="theme: {words}; press for another" title="theme: {words}"')
+
+    def turn() -> None:
+        at = [theme[0] for theme in THEMES].index(session.theme)
+        session.theme = dark.value = THEMES[(at + 1) % len(THEMES)][0]
+        draw()
+
+    button.on_click(turn)
+    draw()

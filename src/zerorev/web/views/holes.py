@@ -1,0 +1,270 @@
+"""The table of the holes: sorted, filtered, and the way to every one of them; below it what was found of the one."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from html import escape
+from typing import Any
+
+from nicegui import events, ui
+
+from zerorev.errors import InputError
+from zerorev.model.hole import Hole
+from zerorev.model.plan import HolePlan
+from zerorev.report.hole_rows import QUICK, HoleRow, hole_row, matching
+from zerorev.report.tables import hole_findings
+from zerorev.web.session import Session
+from zerorev.web.state import State, selected, without_hole
+from zerorev.web.throttle import throttled
+from zerorev.web.views.hole_form import hole_dialog
+from zerorev.web.views.paste_form import paste_dialog
+
+__all__ = ["holes"]
+
+WORDS = {"infeasible": "no motion", "unplanned": "–"}
+MARKS = {"error": "✕", "warning": "!", "info": "i"}
+
+# the grid's own language; a row's values are data to all of these
+REVERSALS = """p => p.data.after === null ? (p.data.standing === 'unplanned' ? '–' : 'no motion')
+    : (p.data.before === null ? '?' : p.data.before) + ' → ' + p.data.after"""
+BY_REVERSALS = """(a, b, m, n) => {
+    const rank = d => d.standing === 'unplanned' ? 1e3 : d.after === null ? 1e2 : d.after;
+    return rank(m.data) - rank(n.data) || (m.data.before ?? 99) - (n.data.before ?? 99);
+}"""
+DIGITS = "p => p.value === null || p.value === undefined ? '–' : p.value.toFixed({digits}).replace('-', '−')"
+COUNT = "p => p.value || ''"
+STEP = """p => {
+    const to = p.nextCellPosition;
+    if (to && to.rowIndex !== p.previousCellPosition.rowIndex && to.rowPinned == null)
+        p.api.getDisplayedRowAtIndex(to.rowIndex)?.setSelected(true, true, 'rowClicked');
+    return to;
+}"""
+PICKED = """e => {
+    const row = e.api.getSelectedRows()[0];
+    if (row && e.source !== 'api') getElement(%d).$emit('picked', row.id);
+}"""
+NARROW = "e => e.api.setColumnsVisible(['target', 'direction'], e.clientWidth > 800)"
+SHOW = """(api => {
+    const node = api?.getRowNode(%s);
+    if (!node) return;
+    if (!node.isSelected()) node.setSelected(true, true, 'api');
+    api.ensureNodeVisible(node);
+})(getElement(%d)?.api)"""
+
+
+def holes(session: Session) -> None:
+    """Draw the table with what can be done to the holes.
+
+    Args:
+        session: whose job's holes are shown.
+    """
+    table = _Table(session)
+    _tools(session, table)
+    table.draw()
+    _findings(session)
+
+
+class _Table:
+    """The grid; of a change it is sent the rows that are others than before, and no more."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._rows: dict[str, HoleRow] = _rows(session.state, {}, None)
+        self._wanted: Callable[[HoleRow], bool] | None = None
+        self._ids: list[str] | None = None
+        self.told: Callable[[str], object] = lambda text: None
+
+    def draw(self) -> None:
+        self._grid = ui.aggrid(_options([row._asdict() for row in self._rows.values()]), auto_size_columns=False)
+        self._grid.classes("zr-grid").props('data-testid="holes"')
+        self._grid.options[":onSelectionChanged"] = PICKED % self._grid.id
+        self._grid.on("picked", self._picked)
+        self._grid.on("firstDataRendered", self._show_selected, [])
+        self._refilter = throttled(self._filter, 0.3)
+        self._tell()
+        self._session.watch(self._changed)
+
+    def filter(self, wanted: Callable[[HoleRow], bool] | None) -> None:
+        self._wanted = wanted
+        self._filter()
+
+    def _filter(self) -> None:
+        wanted = self._wanted
+        ids = None if wanted is None else [row.id for row in self._rows.values() if wanted(row)]
+        self._tell(ids)
+        if ids == self._ids:
+            return
+        self._ids = ids
+        passes = "() => true" if ids is None else f"(ids => node => ids.has(node.data.id))(new Set({json.dumps(ids)}))"
+        self._grid.run_grid_method("updateGridOptions", {":doesExternalFilterPass": passes})
+        self._grid.run_grid_method("onFilterChanged")
+
+    def _tell(self, ids: list[str] | None = None) -> None:
+        count = len(self._rows)
+        self.told(f"{count} hole{'s' if count > 1 else ''}" if ids is None else f"{len(ids)} of {count}")
+
+    def _picked(self, event: events.GenericEventArguments) -> None:
+        if event.args in self._rows:
+            self._session.change(selected(self._session.state, event.args))
+
+    def _show_selected(self) -> None:
+        chosen = self._session.state.selected
+        if chosen in self._rows:
+            self._grid.client.run_javascript(SHOW % (json.dumps(chosen), self._grid.id))
+
+    def _changed(self, before: State, after: State) -> None:
+        if before.job is not after.job or before.answers is not after.answers:
+            self._update(_rows(after, self._rows, before))
+        if before.selected != after.selected:
+            self._show_selected()
+
+    def _update(self, rows: dict[str, HoleRow]) -> None:
+        old, self._rows = self._rows, rows
+        added = [key for key in rows if key not in old]
+        if [*(key for key in old if key in rows), *added] != list(rows):  # in another order, as after an undo
+            self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in rows.values()])
+            self._refilter()
+            return
+        change: dict[str, Any] = {
+            "add": [rows[key]._asdict() for key in added],
+            "update": [row._asdict() for key, row in rows.items() if key in old and old[key] is not row],
+            "remove": [{"id": key} for key in old if key not in rows],
+        }
+        if any(change.values()):
+            self._grid.run_grid_method("applyTransaction", change)
+            self._refilter()
+
+
+def _rows(state: State, old: Mapping[str, HoleRow], before: State | None) -> dict[str, HoleRow]:
+    """The rows by their ids; those of holes that are as they were are the same objects."""
+    if state.job is None:
+        return {}
+    T, was = state.job.T_base_part, {} if before is None or before.job is None else _by_id(before)
+    rows = {}
+    for hole in state.job.holes:
+        answer = state.answers.get(hole.id)
+        same = was.get(hole.id) == (id(hole), id(answer)) and hole.id in old
+        rows[hole.id] = old[hole.id] if same else hole_row(hole, answer, T)
+    return rows
+
+
+def _by_id(state: State) -> dict[str, tuple[int, int]]:
+    """Of each hole, which objects its row was made of."""
+    assert state.job is not None
+    return {hole.id: (id(hole), id(state.answers.get(hole.id))) for hole in state.job.holes}
+
+
+def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    number = {"type": "rightAligned", "width": 84}
+    one = DIGITS.format(digits=1)
+    return {
+        "columnDefs": [
+            {"headerName": "Hole", "field": "id", "flex": 2, "minWidth": 96, "tooltipField": "id"},
+            {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
+             "width": 104, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
+             "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
+                                "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
+            {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 98},
+            {**number, "headerName": "To spare [mm]", "field": "margin", ":valueFormatter": one, "width": 112,
+             "headerTooltip": "by how much the hole could be deeper without a reversal"},
+            {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 84},
+            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 96},
+            {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": 140, "sortable": False},
+            {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": 100, "sortable": False},
+        ],
+        "rowData": rows,
+        ":getRowId": "p => p.data.id",
+        "rowSelection": {"mode": "singleRow", "checkboxes": False, "enableClickSelection": True},
+        ":navigateToNextCell": STEP,
+        ":isExternalFilterPresent": "() => true",
+        ":doesExternalFilterPass": "() => true",
+        ":onGridSizeChanged": NARROW,
+        "rowHeight": 28,
+        "headerHeight": 32,
+        "animateRows": False,
+        "suppressColumnMoveAnimation": True,
+        "suppressCellFocus": False,
+        "suppressColumnVirtualisation": True,
+        "tooltipShowDelay": 500,
+        "overlayNoRowsTemplate": "<span>no hole is as the filter asks</span>",
+    }  # fmt: skip
+
+
+def _tools(session: Session, table: _Table) -> None:
+    """Filter, and what can be done to the holes."""
+    edit = hole_dialog(session)
+    paste = paste_dialog(session)
+    with ui.element("div").classes("zr-tools"):
+        find = ui.input(placeholder="filter: id, or reversals>0").without_auto_validation()
+        find.props('dense outlined clearable debounce=200 aria-label="filter the holes" data-testid="filter"')
+        quick = ui.select(list(QUICK), value="all").props(
+            'dense outlined options-dense aria-label="which holes" data-testid="quick-filter"'
+        )
+        shown = ui.label().classes("zr-muted").props('role="status" data-testid="holes-shown"')
+        ui.element("span").classes("zr-spring")
+        for icon, words, name, do in (
+            ("add", "add a hole", "add-hole", lambda: edit(None)),
+            ("edit", "edit this hole", "edit-hole", lambda: edit(session.state.hole)),
+            ("content_paste", "paste from a spreadsheet, or open a CSV file", "paste", paste),
+            ("delete_outline", "take this hole out", "take-out", lambda: _take_out(session)),
+        ):
+            button = ui.button(icon=icon, on_click=do, color=None).classes("zr-quiet").props("flat round dense")
+            button.props(f'aria-label="{words}" data-testid="{name}"').tooltip(words)
+    table.told = shown.set_text
+
+    def filter_again() -> None:
+        wanted, of = find.value or "", quick.value or "all"
+        try:
+            table.filter(matching(wanted, of) if wanted.strip() or of != "all" else None)
+        except InputError as error:
+            find.error = f"{error.what}; {error.accepted}"
+        else:
+            find.error = None
+
+    find.on_value_change(filter_again)
+    quick.on_value_change(filter_again)
+
+
+def _take_out(session: Session) -> None:
+    hole = session.state.selected
+    if hole is None:
+        return
+    try:
+        session.change(without_hole(session.state, hole))
+    except InputError as error:
+        ui.notify(f"{error.what} (accepted: {error.accepted})", position="top", classes="zr-notify zr-notify-bad")
+    else:
+        ui.notify(f"{hole} is taken out; Ctrl-Z brings it back", position="top", classes="zr-notify")
+
+
+def _findings(session: Session) -> None:
+    """What was found of the selected hole, in words."""
+    listed = (
+        ui.html(sanitize=False)
+        .classes("zr-findings")
+        .props('role="status" aria-label="findings of the selected hole" data-testid="findings" tabindex="0"')
+    )
+
+    def draw() -> None:
+        listed.set_content(_words(session.state.hole, session.state.answer))
+
+    def changed(before: State, after: State) -> None:
+        if before.answer is not after.answer or before.selected != after.selected:
+            draw()
+
+    draw()
+    session.watch(changed)
+
+
+def _words(hole: Hole | None, answer: HolePlan | None) -> str:
+    if hole is None or answer is None:
+        return '<p class="zr-muted">not planned yet</p>'
+    found = sorted(hole_findings(answer), key=lambda finding: list(MARKS).index(finding.level))
+    if not found:
+        return '<p class="zr-muted">nothing to see to</p>'
+    return "".join(
+        f'<p><span class="zr-level zr-{finding.level}" title="{finding.level}">{MARKS[finding.level]}</span>'
+        f"{escape(finding.message)}</p>"
+        for finding in found
+    )

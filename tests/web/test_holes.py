@@ -1,0 +1,111 @@
+"""The table of the holes without a browser: what the grid is told of a change, and no more than that."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("nicegui")
+
+from nicegui import Client
+from nicegui.page import page as page_of
+
+from oracles.published import POSITIONS
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job, Settings
+from zerorev.model.plan import Finding, HolePlan
+from zerorev.report.hole_rows import matching
+from zerorev.web.session import Session
+from zerorev.web.state import answered, opened_job, selected, with_hole, without_hole
+from zerorev.web.views import holes as view
+
+
+@pytest.fixture
+def session(robot, tool):
+    holes = tuple(replace(POSITIONS[0].hole, id=f"H{n}") for n in range(4))
+    return Session(opened_job(Job(robot, tool, holes, Settings())))
+
+
+@pytest.fixture
+def told(session, monkeypatch):
+    """Run edits with the table on a page; what its grid was told of them."""
+
+    def run(*edits):
+        calls = []
+        monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: None)
+
+        async def main():
+            with Client(page_of("/")):
+                table = view._Table(session)
+                table.draw()
+                monkeypatch.setattr(table._grid, "run_grid_method", lambda *call: calls.append(call))
+                for edit in edits:
+                    edit(table)
+                await asyncio.sleep(0.05)
+
+        asyncio.run(main())
+        return calls
+
+    return run
+
+
+def lost(hole):
+    return HolePlan(hole, "infeasible", 0.1, findings=(Finding("error", "limit", "why <b>", hole.id),))
+
+
+def test_an_answer_updates_its_own_row_alone(session, told):
+    hole = session.state.job.holes[2]
+    ((name, change), *_) = told(lambda _: session.change(answered(session.state, lost(hole))))
+    assert name == "applyTransaction"
+    assert (change["add"], change["remove"]) == ([], [])
+    assert [(row["id"], row["standing"], row["findings"]) for row in change["update"]] == [("H2", "infeasible", 1)]
+
+
+def test_looking_at_another_hole_changes_no_row(session, told):
+    assert not told(lambda _: session.change(selected(session.state, "H3")))
+
+
+def test_a_hole_that_is_added_or_taken_out_is_all_that_is_told(session, told):
+    new = Hole("N", np.array([0.5, 0.1, 0.7]), np.array([1.0, 0, 0]), 0.03)
+    calls = told(
+        lambda _: session.change(with_hole(session.state, new)),
+        lambda _: session.change(without_hole(session.state, "H1")),
+    )
+    added, removed = (change for name, change in calls if name == "applyTransaction")
+    assert [row["id"] for row in added["add"]] == ["N"]
+    assert not added["update"]
+    assert removed["remove"] == [{"id": "H1"}]
+
+
+def test_an_undo_puts_the_row_back_where_it_was(session, told):
+    calls = told(lambda _: session.change(without_hole(session.state, "H1")), lambda _: session.undo())
+    _, what, rows = next(call for call in calls if call[0] == "setGridOption")
+    assert what == "rowData"
+    assert [row["id"] for row in rows] == ["H0", "H1", "H2", "H3"]
+
+
+def test_the_filter_lets_through_what_matches_and_says_how_many(session, told):
+    words = []
+
+    def look(table):
+        table.told = words.append
+        table.filter(matching("h1"))
+        table.filter(matching("h1"))
+        table.filter(None)
+
+    calls = told(look)
+    passes = [call[1][":doesExternalFilterPass"] for call in calls if call[0] == "updateGridOptions"]
+    assert len(passes) == 2
+    assert '["H1"]' in passes[0]
+    assert passes[1] == "() => true"
+    assert words == ["1 of 4", "1 of 4", "4 holes"]
+
+
+def test_findings_are_shown_as_text_and_never_as_markup(session):
+    hole = session.state.job.holes[0]
+    words = view._words(hole, lost(hole))
+    assert "why &lt;b&gt;" in words
+    assert "✕" in words
