@@ -304,7 +304,7 @@ def test_a_thousand_holes_open_and_stay_usable(serve, open_page, say, tmp_path_f
     rows = [
         f"h{n:04d},{450 + n % 10 * 10},{n // 10 % 10 * 20 + 200},{700 + n // 100 * 10},1,0,0,20" for n in range(1000)
     ]
-    (folder / "panel.csv").write_text("id,x_mm,y_mm,z_mm,dx,dy,dz,depth_mm\n" + "\n".join(rows) + "\n")
+    (folder / "panel.csv").write_text("id,x_mm,y_mm,z_mm,i,j,k,depth_mm\n" + "\n".join(rows) + "\n")
     (folder / "panel.yaml").write_text("robot: kuka_kr6_r700_2\ntool: thesis_drill\nholes: panel.csv\n")
     server = serve(folder / "panel.yaml")
     began = time.perf_counter()
