@@ -22,7 +22,7 @@ import pytest
 from zerorev.cli.common import INTERRUPTED
 
 FLAGS = (
-    "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+    "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 )  # fmt: skip
 PATIENCE = 60.0  # [s] for a server to start or end; a machine may be busy

@@ -163,7 +163,7 @@ def test_a_drag_is_answered_at_once_and_passed_on_later(on_page, session, robot,
             assert [mark["joint"] for mark in answer["marks"]] == [event.joint for event in score.events]
             assert answer["in_hand"]
         assert changes == []
-        await asyncio.sleep(0.3)
+        await asyncio.sleep(view.SOONEST + 0.2)
         assert len(changes) == 1  # three drags, one change
         assert psi_of(session.state) == pytest.approx([14.16, -5.94, -14.0])
         do("drop", points=points((14.16, -6.5, -14.0)))
@@ -180,7 +180,7 @@ def test_a_drag_draws_neither_the_field_nor_the_branches(on_page):
         do("grab")
         for seq in range(1, 6):
             do("drag", points=points((14.16, -seq, -14.0)), seq=seq, ms=10.0)
-        await asyncio.sleep(0.3)
+        await asyncio.sleep(view.SOONEST + 0.2)
         assert {name for name, *_ in component.told} == {"show_motion"}
         assert len(component.told) == 5  # its own change of the state is not answered once more
 
@@ -218,12 +218,12 @@ def test_escape_restores_what_was_before_the_drag(on_page, session):
         do("restore")
         assert session.state.steered is None
         assert np.array(component.last("show_motion")["points"])[:, 1] == pytest.approx([20.6, 1.12, -25.37])
-        await asyncio.sleep(0.2)
+        await asyncio.sleep(view.SOONEST + 0.2)
         assert session.state.steered is None  # nothing is passed on later
         session.change(steered(session.state, by_hand))
         do("grab")
         do("drag", points=points((1, 2, 3)), seq=2, ms=10.0)
-        await asyncio.sleep(0.3)
+        await asyncio.sleep(view.SOONEST + 0.2)
         assert session.state.steered is not by_hand
         do("restore")
         assert session.state.steered is by_hand
@@ -312,7 +312,7 @@ def test_an_answer_takes_the_place_of_what_was_in_hand(on_page, session):
         do("grab")
         do("drag", points=points((1, 2, 3)), seq=1, ms=1.0)
         session.change(answered(session.state, replace(session.state.answer)))
-        await asyncio.sleep(0.2)
+        await asyncio.sleep(view.SOONEST + 0.2)
         assert session.state.steered is None
         assert component.last("show_motion")["reversals"] == 0
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
 
 __all__ = ["throttled"]
+
+BETWEEN = 0.04  # [s] between what two views of a page draw, so that a drag is answered in between
+
+_next: WeakKeyDictionary[Client, float] = WeakKeyDictionary()  # when a page has time for the next view
 
 
 def throttled(draw: Callable[[], None], pause: float = 0.1) -> Callable[[], None]:
@@ -15,7 +20,7 @@ def throttled(draw: Callable[[], None], pause: float = 0.1) -> Callable[[], None
 
     Args:
         draw: is called in the event loop, after the handler that asked for it is through, while the page is there.
-        pause: between two calls of it [s].
+        pause: between two calls of it [s]; with 0 it does not wait for other views either.
     """
     page: Client = ui.context.client
     waiting, last = False, -pause
@@ -32,6 +37,10 @@ def throttled(draw: Callable[[], None], pause: float = 0.1) -> Callable[[], None
         if not waiting:
             waiting = True
             loop = asyncio.get_running_loop()
-            loop.call_at(max(loop.time(), last + pause), now)
+            turn = max(loop.time(), last + pause)
+            if pause:
+                turn = max(turn, _next.get(page, 0.0))
+                _next[page] = turn + BETWEEN
+            loop.call_at(turn, now)
 
     return ask

@@ -8,6 +8,7 @@ import { Track, ribbon } from "zerorev-cell/cell_trace.js";
 
 const VIEWS = { iso: [1, -1.35, 0.75], front: [1, 0, 0.12], side: [0, -1, 0.12], top: [0, -0.001, 1] };
 const SEEKS = 66; // [ms] between two that are told
+const REST = 300; // [ms] that a motion in hand has to rest before it is drawn where drawing is slow
 
 export class Cell {
   // root: an empty element; on: pickHole(id), pickCell(number), seek(x); fine: as it is with graphics hardware
@@ -65,7 +66,9 @@ export class Cell {
     this._showRibbons();
     this.note.hidden = !this.track?.why;
     this.note.textContent = this.track?.why ?? "";
-    this.seek(data && this.seen === data.hole ? this.x : (this.track?.start ?? 0));
+    const again = Boolean(data) && this.seen === data.hole;
+    if (this.slow && again) this.restsAt = performance.now() + REST;
+    this.seek(again ? this.x : (this.track?.start ?? 0));
     this.seen = data?.hole;
   }
 
@@ -145,11 +148,15 @@ export class Cell {
   invalidate(moved = false) {
     if (this.failed) return;
     if (moved) this.renderer.shadowMap.needsUpdate = true;
-    this.waiting ??= requestAnimationFrame((now) => this._frame(now));
+    clearTimeout(this.resting);
+    const rest = (this.restsAt ?? 0) - performance.now();
+    if (rest > 0 && !this.playing) this.resting = setTimeout(() => this.invalidate(), rest);
+    else this.waiting ??= requestAnimationFrame((now) => this._frame(now));
   }
 
   dispose() {
     cancelAnimationFrame(this.waiting);
+    clearTimeout(this.resting);
     this.watchers?.forEach((stop) => stop());
     if (this.failed) return;
     this.controls.dispose();
@@ -159,9 +166,9 @@ export class Cell {
   }
 
   _begin() {
-    const context = this.canvas.getContext("webgl2", { antialias: true, alpha: true });
+    this.slow = !this.fine && drawnBySoftware(); // then fewer pixels, no shadows, and not while a motion is in hand
+    const context = this.canvas.getContext("webgl2", { antialias: !this.slow, alpha: true });
     if (!context) throw new Error("no WebGL 2");
-    this.slow = !this.fine && drawnBySoftware(context); // then fewer pixels, and no shadows
     const renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context });
     renderer.setPixelRatio(this.slow ? 1 : Math.min(window.devicePixelRatio, 2));
     renderer.shadowMap.enabled = !this.slow;
@@ -363,7 +370,11 @@ export class Cell {
   }
 }
 
-function drawnBySoftware(context) {
+function drawnBySoftware() {
+  const context = document.createElement("canvas").getContext("webgl2");
+  if (!context) return false;
   const named = context.getExtension("WEBGL_debug_renderer_info");
-  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(named ? context.getParameter(named.UNMASKED_RENDERER_WEBGL) : "");
+  const name = named ? context.getParameter(named.UNMASKED_RENDERER_WEBGL) : "";
+  context.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }

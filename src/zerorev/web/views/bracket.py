@@ -17,7 +17,7 @@ from zerorev.web.views.chart import INK, SURFACE, axis, chart, dashes, pairs, re
 
 __all__ = ["bracket", "options", "sentence"]
 
-STEP = float(np.deg2rad(0.5))
+STEP = float(np.deg2rad(1.0))
 KEYS = """<span class="zr-key-band"></span>between the legs
 <span class="zr-key-good"></span>spins where all six are"""
 THIN = {"width": 1.3}

@@ -27,7 +27,7 @@ from zerorev.web.state import State, Steered, shown, steered
 __all__ = ["twist_map"]
 
 STATIC = Path(__file__).parents[1] / "static"
-SOONEST, LATEST = 0.1, 1.6  # [s] how often the other views follow a drag
+SOONEST, LATEST = 0.4, 1.6  # [s] how often the other views follow a drag
 TOO_LATE, REST = 0.8, 0.25  # [s] if less often than that, they follow when the pointer has rested for so long instead
 OWN = -1  # branch: that of the motion
 NOTHING = object()
