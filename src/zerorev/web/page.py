@@ -81,7 +81,7 @@ def _machine(state: State) -> object:
 
 
 def _workbench(session: Session, work: Work) -> None:
-    with ui.element("main").classes("zr-workbench"):
+    with ui.element("div").classes("zr-workbench"):
         with ui.element("section").classes("zr-panel zr-bar").props('aria-label="the selected hole"'):
             summary(session)
             with ui.element("div").classes("zr-doings"):

@@ -262,7 +262,7 @@ def _words(hole: Hole | None, answer: HolePlan | None) -> str:
         return '<p class="zr-muted">not planned yet</p>'
     found = sorted(hole_findings(answer), key=lambda finding: list(MARKS).index(finding.level))
     if not found:
-        return '<p class="zr-muted">nothing to see to</p>'
+        return '<p class="zr-muted">no findings</p>'
     return "".join(
         f'<p><span class="zr-level zr-{finding.level}" title="{finding.level}">{MARKS[finding.level]}</span>'
         f"{escape(finding.message)}</p>"
