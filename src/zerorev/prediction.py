@@ -123,13 +123,13 @@ def narrowest(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Criti
 
 def first_order_root(a: Array, b: Array, c: Array) -> Array:
     """By first order; inf where it never comes down."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         return np.where(a > 0, np.where(b < 0, -a / b, np.inf), 0.0)
 
 
 def second_order_root(a: Array, b: Array, c: Array) -> Array:
     """By second order; inf where it never comes down."""
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         root = 2 * a / (np.sqrt(b * b - 2 * a * c) - b)
         return np.where(a > 0, np.where(root > 0, root, np.inf), 0.0)
 
