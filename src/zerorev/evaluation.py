@@ -17,7 +17,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JointPath, joint_path, outward_rates
 
-__all__ = ["NIL_RATE", "Evaluation", "evaluate", "meets_threshold", "steady_rates"]
+__all__ = ["NIL_RATE", "Evaluation", "evaluate", "event_distance", "meets_threshold", "steady_rates"]
 
 NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_SEGMENT = 200
@@ -59,7 +59,7 @@ def evaluate(
         return Evaluation(None, None, _faults(robot, hole, branch, path))
     events, min_rate = _turning_points(robot, tool, hole, profile, branch)
     # travel and extents are taken through the very points where a joint turns
-    turns = [_distance(profile, event) for event in events if event.leg != "target"]
+    turns = [event_distance(profile, event) for event in events if event.leg != "target"]
     if turns:
         path = joint_path(robot, tool, hole, profile, branch, near=near, through=turns)
         if not path.runs:
@@ -107,7 +107,7 @@ def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Fin
     return tuple(Finding("error", kind, message, hole.id) for kind, message in found)
 
 
-def _distance(profile: Profile, event: Event) -> float:
+def event_distance(profile: Profile, event: Event) -> float:
     """Path distance [m] of an event."""
     out = event.standoff - profile.standoff[profile.corner]
     return float(profile.distance[profile.corner] + (out if event.leg == "retract" else -out))

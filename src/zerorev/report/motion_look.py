@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from zerorev.evaluation import NIL_RATE, Evaluation, evaluate, meets_threshold, steady_rates
+from zerorev.evaluation import NIL_RATE, Evaluation, evaluate, event_distance, meets_threshold, steady_rates
 from zerorev.model._arrays import Array
 from zerorev.model._units import deg, deg_per_mm, mm
 from zerorev.model.hole import Hole
@@ -162,11 +162,10 @@ def signed_distance(profile: Profile, distance: Array) -> Array:
 
 
 def _mark(robot: Robot, profile: Profile, event: Event) -> Mark:
-    corner = profile.corner
-    away = 0.0 if event.leg == "target" else event.standoff - float(profile.standoff[corner])
-    distance = -away if event.leg == "plunge" else away
-    _, psi = profile.at(profile.distance[corner] + distance)
-    return Mark(event.joint, robot.joint_names[event.joint - 1], distance, float(psi), event.leg)
+    along = np.asarray(profile.distance[profile.corner] if event.leg == "target" else event_distance(profile, event))
+    _, psi = profile.at(along)
+    away = float(signed_distance(profile, along))
+    return Mark(event.joint, robot.joint_names[event.joint - 1], away, float(psi), event.leg)
 
 
 def _faults(robot: Robot, profile: Profile, path: JointPath) -> Iterator[Fault]:
