@@ -87,7 +87,7 @@ def _machine() -> str:
     """Kind of machine, date and versions, in a sentence each."""
     versions = ", ".join(f"{name} {version(name)}" for name in PEERS)
     return (
-        f"{_processor()}, one core of it used; {platform.system()}; {datetime.now(UTC):%d %B %Y}."
+        f"{_processor()}, one core of it used unless two are named; {platform.system()}; {datetime.now(UTC):%d %B %Y}."
         f" zerorev {version('zerorev')}, Python {platform.python_version()}, {versions}."
     )
 

@@ -37,7 +37,10 @@ class Timed(Generic[T]):
 
 
 def in_turns(
-    work: Mapping[str, Callable[[int], T]], rounds: int, clock: Callable[[], float] = time.process_time
+    work: Mapping[str, Callable[[int], T]],
+    rounds: int,
+    clock: Callable[[], float] = time.process_time,
+    least: float = 0.0,
 ) -> dict[str, Timed[T]]:
     """Run each piece of work once a round, after one run that is not timed (it may compile).
 
@@ -45,6 +48,8 @@ def in_turns(
         work: by name; called with the number of the round, which serves as the seed of what is random.
         rounds: how many.
         clock: reads the time [s]; where threads share the work, the wall's.
+        least: work that is done sooner [s] is done again in the same turn until then, and the turn's mean is taken:
+            what takes less than a millisecond would else be timed on caches that the others left full of theirs.
     """
     for call in work.values():
         call(0)
@@ -52,9 +57,10 @@ def in_turns(
     seconds: dict[str, list[float]] = {name: [] for name in work}
     for n in range(rounds):
         for name, call in work.items():
-            began = clock()
-            value = call(n)
-            seconds[name].append(clock() - began)
+            began, runs = clock(), 0
+            while runs == 0 or clock() - began < least:
+                value, runs = call(n), runs + 1
+            seconds[name].append((clock() - began) / runs)
             values[name].append(value)
     return {name: Timed(tuple(values[name]), tuple(seconds[name])) for name in work}
 

@@ -23,6 +23,7 @@ __all__ = ["apart", "run"]
 
 COMPARED = 1_000
 SAME = 1e-6  # [rad]
+TURN = 0.02  # [s] that each piece of work is timed for in each round
 LEAST_SINE = 1e-3  # of A5: nearer to the wrist's singularity angles are known less well than that
 
 
@@ -64,7 +65,7 @@ def run(options: Options) -> Section:
         "EAIK (C++): inverse kinematics, `IK_batched`": lambda _: eaik.solve(),
         "NumPy, vectorised: inverse kinematics": lambda _: arm_numpy.inverse(robot.arm, T),
     }
-    timed = in_turns(work, options.rounds)
+    timed = in_turns(work, options.rounds, least=TURN)
     first = timed[ours].median
     per_pose = {
         name: (each.median / options.poses * 1e9, each.least / options.poses * 1e9) for name, each in timed.items()
@@ -78,7 +79,8 @@ def run(options: Options) -> Section:
             for name, each in timed.items()
         ],
         notes=[
-            f"{options.poses:,} poses of position 1 a batch, {options.rounds} rounds. `reach` returns all eight"
+            f"{options.poses:,} poses of position 1 a batch, {options.rounds} rounds, in each of them again and"
+            f" again for {TURN * 1e3:.0f} ms. `reach` returns all eight"
             " solutions, with a smallest singular value of each; `batch_inverse` the one nearest to the pose before."
             " Before anything is timed the sets of solutions are compared, of"
             f" {COMPARED:,} random poses each: greatest difference from zerorev's "

@@ -7,7 +7,7 @@ import pytest
 
 from oracles import legs as twin
 from oracles.starts import ALL_JOINTS, ROBOTS, SLOW, TOOL, Start, asked, starts
-from zerorev.kernels import field, legs, pairs
+from zerorev.kernels import field, leg_search, legs, pairs, weigh
 from zerorev.model.hole import Hole
 
 NODES = 24
@@ -208,11 +208,11 @@ class TestLook:
 def least_of_greatest(start, wanted, within=False):
     """The margin of the better candidate of each side, of the worse side; of those within the limits, if asked."""
     _, kappa, sense = start.at_target()
-    sides, slopes, leg = [], np.empty(legs.MAX_SLOPES), np.empty((legs.ROWS, 6))
+    sides, slopes, leg = [], np.empty(leg_search.MAX_SLOPES), np.empty((legs.ROWS, 6))
     other = Start(start.robot, start.hole, start.branch ^ 1, start.psi_t, 0.0)
     flips = [(False, start.at_target()[0]), (True, other.at_target()[0])]
     for side in (1.0, -1.0):
-        count = legs.slope_candidates(kappa, ALL_JOINTS, side, start.psi_t, wanted, slopes)
+        count = leg_search.slope_candidates(kappa, ALL_JOINTS, side, start.psi_t, wanted, slopes)
         at, work = (start.robot.arm, start.plane, start.branch, start.psi_t), np.empty(field.ROOM)
         greatest = -np.inf
         for slope in slopes[:count]:
@@ -220,7 +220,7 @@ def least_of_greatest(start, wanted, within=False):
                 continue
             if not within or any(pairs.turns_fit(leg, leg, flipped, joints, wanted) for flipped, joints in flips):
                 held = side * sense, ALL_JOINTS, flips[0][1]
-                greatest = max(greatest, legs.weigh_leg(*at, slope, held, wanted, 94, work)[0])
+                greatest = max(greatest, weigh.weigh_leg(*at, slope, held, wanted, 94, work)[0])
         sides.append(greatest)
     return min(sides)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from oracles import legs as twin
 from zerorev import kinematics
-from zerorev.kernels import field, legs
+from zerorev.kernels import field, leg_search, legs
 from zerorev.model.files import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
 from zerorev.search.problem import Asked
@@ -64,7 +64,7 @@ class Start:
         best, work = np.empty(3), np.empty(field.ROOM)
         held = (side * sense, keep, joints)
         args = self.robot.arm, self.plane, self.branch, self.psi_t, side, kappa, held, wanted, mode, nodes, work, best
-        legs.best_leg(*args)
+        leg_search.best_leg(*args)
         return best
 
 

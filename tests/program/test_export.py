@@ -186,3 +186,11 @@ def test_never_a_relative_move(published, plan_of, krl):
     text = export(plan_of(published(1), published(2), published(3))).text
     assert "_REL" not in text.upper()
     assert np.all([move.kind in ("PTP", "LIN") for move in krl.read(text).moves])
+
+
+def test_on_two_processes_the_program_is_the_same_and_is_told_of_hole_by_hole(failed, published, plan_of):
+    told = []
+    plan = plan_of(published(1), failed, published(3))
+    alone = export(plan, skip_failed=True, progress=lambda *so_far: told.append(so_far))
+    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    assert export(plan, skip_failed=True, workers=2) == alone

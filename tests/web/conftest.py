@@ -14,6 +14,7 @@ import subprocess
 import sys
 import threading
 from collections import deque
+from collections.abc import Mapping
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -61,12 +62,12 @@ class Server:
         lines: the last that it wrote, for messages.
     """
 
-    def __init__(self, *arguments: str | Path, folder: Path) -> None:
+    def __init__(self, *arguments: str | Path, folder: Path, variables: Mapping[str, str] | None = None) -> None:
         command = [sys.executable, "-u", "-m", "zerorev.cli", "view", *map(str, arguments), "--no-browser", "--port=0"]
         self.lines: deque[str] = deque(maxlen=200)
         self._process = subprocess.Popen(
             command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-            env={**os.environ, "COLUMNS": "200"}, start_new_session=True,
+            env={**os.environ, "COLUMNS": "200", **(variables or {})}, start_new_session=True,
         )  # fmt: skip
         self._there = threading.Event()
         self.address = ""
@@ -126,8 +127,8 @@ def serve(tmp_path_factory):
     """Starts `zerorev view` with the arguments given; all end with the test file, and each must end well."""
     servers: list[Server] = []
 
-    def start(*arguments: str | Path) -> Server:
-        servers.append(Server(*arguments, folder=tmp_path_factory.mktemp("view")))
+    def start(*arguments: str | Path, **options: Mapping[str, str]) -> Server:
+        servers.append(Server(*arguments, folder=tmp_path_factory.mktemp("view"), **options))
         return servers[-1]
 
     yield start
@@ -176,6 +177,22 @@ def open_page(browser):
     for context in contexts:
         context.close()
     assert not faults, "\n".join(faults)
+
+
+@pytest.fixture
+def on_screen():
+    """Finds where [px] a point of a `Cell` is drawn: the page, the cell, and its point, both in JavaScript."""
+
+    def found(page, cell: str, point: str) -> tuple[float, float]:
+        x, y = page.evaluate(
+            f"""() => {{ const cell = {cell}, at = {point};
+            cell.camera.updateMatrixWorld(); at.project(cell.camera);
+            const box = cell.canvas.getBoundingClientRect();
+            return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height]; }}"""
+        )
+        return x, y
+
+    return found
 
 
 @pytest.fixture

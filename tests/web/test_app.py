@@ -57,6 +57,7 @@ def spins(page):
 
 
 NAMES = ("start", "target", "end")
+CELL = "document.querySelector('[data-testid=\"cell\"]').cell"
 
 
 def score(job, planned, psi_deg):
@@ -280,6 +281,32 @@ def test_a_map_of_cells_and_a_cell_that_becomes_a_hole(ready):
     assert (made.score.reversals, made.verified.passed) == (0, True)
 
 
+def test_a_click_on_a_cell_in_the_picture_of_the_robot_plans_it(ready, on_screen):
+    ready.get_by_test_id("tab-map").click()
+    for name, value in (("width", "600"), ("height", "600"), ("spacing", "300")):
+        ready.get_by_test_id(f"map-{name}").fill(value)
+    ready.get_by_test_id("map").click()
+    expect(ready.get_by_test_id("progress")).to_be_hidden(timeout=120_000)
+    expect(ready.get_by_test_id("map-legend")).not_to_contain_text("not yet")
+    ready.get_by_test_id("cell-camera-iso").click()
+    # of the cells with a stroke, the one farthest from the hole in the plane's middle, which a click would pick first
+    chosen = ready.evaluate(
+        f"""() => {{ const {{ slice, camera }} = {CELL}, at = (n) => slice.at(n, camera.position.clone());
+        const middle = at((slice.words.length - 1) / 2);
+        const drilled = slice.words.map((_, n) => n).filter((n) => /\\d mm/.test(slice.words[n]));
+        return drilled.sort((a, b) => at(b).distanceTo(middle) - at(a).distanceTo(middle))[0]; }}"""
+    )
+    ready.get_by_test_id("cell-canvas").scroll_into_view_if_needed()
+    x, y = on_screen(ready, CELL, f"cell.slice.at({chosen}, cell.camera.position.clone())")
+    ready.mouse.click(x, y)
+    expect(ready.get_by_test_id("page")).to_contain_text("hole 4 of 4")
+    expect(ready.get_by_test_id("reversals")).to_have_text("0")
+    _, plan = saved(ready, lambda: from_menu(ready, "download-plan"))
+    made = plan_from_text(plan.decode(), "plan.json").holes[-1].hole
+    wanted = ready.evaluate(f"{CELL}.slice.at({chosen}, {CELL}.camera.position.clone()).toArray()")
+    np.testing.assert_allclose(made.target * 1e3, wanted, atol=1e-3)
+
+
 def test_the_replay_opens_from_the_disk_without_a_network(ready, open_page, browser, tmp_path):
     name, page = saved(ready, lambda: from_menu(ready, "download-replay"))
     (tmp_path / name).write_bytes(page)
@@ -319,3 +346,30 @@ def test_a_thousand_holes_open_and_stay_usable(serve, open_page, say, tmp_path_f
     expect(page.get_by_test_id("page")).to_contain_text("hole 778 of 1000")
     say(f"1,000 holes: {time.perf_counter() - began:.1f} s to filter and select one")
     expect(page.get_by_test_id("reversals")).not_to_have_text("–", timeout=120_000)
+
+
+def test_ctrl_c_does_not_wait_for_a_compiler(serve, open_page, tmp_path):
+    """The first page of a first start: plan and map compile their kernels, which takes a minute."""
+    server = serve(variables={"NUMBA_CACHE_DIR": str(tmp_path)})
+    page = open_page(server)
+    page.expected += ["ERR_CONNECTION", "WebSocket", "ERR_EMPTY"]
+    expect(page.get_by_test_id("map-cover")).to_be_visible()
+    page.wait_for_timeout(2000)
+    began = time.perf_counter()
+    server.end()
+    assert time.perf_counter() - began < 20
+    assert any("compiling kernels" in line for line in server.lines)
+
+
+def test_what_a_curve_is_under_the_pointer(ready, planned):
+    box = ready.get_by_test_id("curves").bounding_box()
+    ready.mouse.move(box["x"] + 0.1 * box["width"], box["y"] + 0.25 * box["height"])
+    tip = ready.locator(".zr-tip:visible")
+    expect(tip).to_contain_text("constant spin")
+    expect(tip).to_contain_text("A1")
+    ready.mouse.move(0, 0)
+    expect(tip).to_have_count(0)
+    box = ready.get_by_test_id("bracket").bounding_box()
+    ready.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    expect(tip).to_contain_text("in deg/mm")
+    assert [name in tip.inner_text() for name in ("A1", "A2", "A3", "A4", "A5", "A6")] == [True] * 6

@@ -98,6 +98,38 @@ class TestSettings:
         assert settings.weights == (("travel", 1.0),)
         np.testing.assert_allclose(settings.near_joints, 0.1)
 
+    def test_a_weighted_sum_with_the_stiffness_it_needs(self, job):
+        asked = {("objective",): "weights", ("objective", "travel"): 1.0, ("objective", "margin"): "",
+                 ("objective", "compliance_axial"): 0.2}  # fmt: skip
+        _, wrong = settings_of(asked, job)
+        assert [path for path, _ in wrong] == [("objective",)]
+        assert "stiffness" in wrong[0][1].what
+        asked |= {("joint_stiffness_nm_per_rad", n): 1e5 + n for n in range(6)}
+        settings, wrong = settings_of(asked, job)
+        assert not wrong
+        assert settings.weights == (("travel", 1.0), ("compliance_axial", 0.2))
+        assert settings.joint_stiffness == tuple(1e5 + n for n in range(6))
+
+    def test_weights_without_a_choice_for_them_are_left_alone(self, job):
+        settings, _ = settings_of({("objective",): "margin", ("objective", "travel"): 1.0}, job)
+        assert (settings.objective, settings.weights) == ("margin", ())
+
+    def test_weights_that_weigh_nothing_are_refused(self, job):
+        for weight in (0.0, ""):
+            settings, wrong = settings_of({("objective",): "weights", ("objective", "travel"): weight}, job)
+            assert settings is None
+            assert [path for path, _ in wrong] == [("objective",)]
+
+    def test_six_or_none(self, job):
+        six = {("near_joints_deg", n): 10.0 * n for n in range(6)}
+        settings, _ = settings_of(six, job)
+        np.testing.assert_allclose(np.rad2deg(settings.near_joints), np.arange(6) * 10.0)
+        _, wrong = settings_of(six | {("near_joints_deg", 4): ""}, job)
+        assert [path for path, _ in wrong] == [("near_joints_deg", 4)]
+        there = replace(job, settings=settings)
+        none, _ = settings_of({("near_joints_deg", n): "" for n in range(6)}, there)
+        assert none.near_joints is None
+
     def test_the_same_again_changes_nothing(self, job):
         settings, _ = settings_of({("blend_mm",): 1.0, ("feed_mm_s", "plunge"): 5.0}, job)
         assert settings is job.settings
@@ -158,6 +190,26 @@ class TestUndo:
         assert not session.can_undo
         session.undo()
         assert session.state.job is first.job
+
+    def test_what_one_work_finds_bit_by_bit_is_one_edit(self, job):
+        session, work = Session(opened_job(job)), object()
+        for hole in job.holes:
+            deeper = replace(hole, depth=hole.depth + 0.01)
+            session.change(with_hole(session.state, deeper, instead_of=hole.id), of=work)
+        session.undo()
+        assert session.state.job is job
+        assert not session.can_undo
+
+    def test_an_edit_amid_a_work_is_an_edit_of_its_own(self, job):
+        session, work = Session(opened_job(job)), object()
+        first, second = (replace(hole, depth=hole.depth + 0.01) for hole in job.holes[:2])
+        session.change(with_hole(session.state, first, instead_of=first.id), of=work)
+        session.change(without_hole(session.state, job.holes[2].id))
+        session.change(with_hole(session.state, second, instead_of=second.id), of=work)
+        for count in (2, 3, 3):
+            session.undo()
+            assert len(session.state.job.holes) == count
+        assert session.state.job is job
 
     def test_selecting_is_no_edit(self, job):
         session = Session(opened_job(job))

@@ -160,33 +160,23 @@ def test_another_hole(open_replay, plan):
     assert page.locator("img").count() == 0
 
 
-def test_a_click_picks_a_hole(open_replay, plan):
+def test_a_click_picks_a_hole(open_replay, plan, on_screen):
     page = open_replay()
     page.get_by_test_id("cell-camera-iso").click()
-    x, y = page.evaluate(
-        f"""() => {{ const cell = {CELL}, at = cell.holes.at(1, cell.holes.depth[1], cell.camera.position.clone());
-        cell.camera.updateMatrixWorld(); at.project(cell.camera);
-        const box = cell.canvas.getBoundingClientRect();
-        return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height]; }}"""
-    )
+    x, y = on_screen(page, CELL, "cell.holes.at(1, cell.holes.depth[1], cell.camera.position.clone())")
     page.mouse.move(x + 3, y)
     page.locator(".zrc-label:visible", has_text=plan.holes[1].hole.id).wait_for()
     page.mouse.click(x + 3, y)
     assert page.get_by_test_id("replay-hole").input_value() == "1"
 
 
-def test_a_click_picks_a_cell_of_a_map(open_replay):
+def test_a_click_picks_a_cell_of_a_map(open_replay, on_screen):
     page = open_replay()
     position = np.array([[0.2 + 0.1 * n, -0.6, 0.3] for n in range(4)])
     data = slice_data(position, np.diag([0.1, 0.1, 0.1])[[0, 2]], ["#0072b2"] * 4, [f"{n} mm" for n in range(4)])
     page.get_by_test_id("cell-camera-side").click()
     page.evaluate(f"(data) => {{ {CELL}.showSlice(data); {CELL}.on.pickCell = (n) => (window.picked = n); }}", data)
-    x, y = page.evaluate(
-        f"""() => {{ const cell = {CELL}, at = cell.slice.at(2, cell.camera.position.clone());
-        cell.camera.updateMatrixWorld(); at.project(cell.camera);
-        const box = cell.canvas.getBoundingClientRect();
-        return [box.left + (at.x + 1) / 2 * box.width, box.top + (1 - at.y) / 2 * box.height]; }}"""
-    )
+    x, y = on_screen(page, CELL, "cell.slice.at(2, cell.camera.position.clone())")
     page.mouse.move(x + 3, y)
     page.locator(".zrc-label:visible", has_text="2 mm").wait_for()
     page.mouse.click(x + 3, y)

@@ -88,10 +88,13 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
     check_outputs((output,), plan)
     answer = read_plan(plan)
 
+    from zerorev.jobs import workers_for
     from zerorev.program.export import export as to_program
     from zerorev.report import tables
 
-    program = to_program(answer, controller, skip_failed=skip_failed, name=output.stem if output else None)
+    name, workers = output.stem if output else None, workers_for(len(answer.holes), None)
+    with terminal.progress("checking", len(answer.holes)) as progress:
+        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=workers, progress=progress)
     target = output or plan.with_name(program.name + program.suffix)
     write_text(target, program.text)
     terminal.print_lines(tables.finding_lines(program.findings))

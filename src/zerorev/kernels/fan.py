@@ -13,16 +13,15 @@ import numpy as np
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, twist_field
 from zerorev.kernels.field import ROOM
+from zerorev.kernels.leg_search import GEOMETRIC_SLOPES, SLOPES_BETWEEN
 from zerorev.kernels.legs import (
     END_ANGLE,
-    GEOMETRIC_SLOPES,
     GREATEST_MARGIN,
     GREATEST_RATE,
     LEAST_RATE,
     NIL,
     PLUNGE_ROTATION,
     ROWS,
-    SLOPES_BETWEEN,
     TARGET_RATE,
     TURNS,
     joint_travel,

@@ -14,22 +14,9 @@ import numpy as np
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
 from zerorev.kernels.field import ROOM
-from zerorev.kernels.legs import (
-    GOLDEN,
-    GREATEST_ANGLE,
-    GREATEST_MARGIN,
-    LEAST_ANGLE,
-    MAX_SLOPES,
-    PLUNGE_ROTATION,
-    ROWS,
-    SIEVE_ERROR,
-    TRAVEL,
-    best_leg,
-    most_gained,
-    sift,
-    slope_candidates,
-    trace_leg,
-)
+from zerorev.kernels.leg_search import GOLDEN, MAX_SLOPES, best_leg, most_gained, slope_candidates
+from zerorev.kernels.legs import GREATEST_ANGLE, GREATEST_MARGIN, LEAST_ANGLE, PLUNGE_ROTATION, ROWS, TRAVEL, trace_leg
+from zerorev.kernels.weigh import SIEVE_ERROR, sift
 
 # columns of what is returned
 VALUE, SLOPE_ABOVE, SLOPE_BELOW, MARGIN, BRANCH, SPIN = range(6)

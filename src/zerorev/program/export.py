@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
+from functools import partial
 
 from zerorev.errors import InputError, NotExportableError
-from zerorev.model.plan import Finding, Plan
+from zerorev.model.plan import Finding, HolePlan, Plan
 from zerorev.program.krl import refuse_other_makers, to_krl
 from zerorev.program.krl_text import identifier
 from zerorev.program.neutral import Program, build_program
 from zerorev.program.preflight import preflight
 from zerorev.verify.check import verify_hole
+from zerorev.workers import Workers
 
 __all__ = ["CONTROLLERS", "Controller", "Exported", "export", "exporting"]
 
@@ -65,6 +67,8 @@ def export(
     skip_failed: bool = False,
     name: str | None = None,
     version: str | None = None,
+    workers: int = 1,
+    progress: Callable[[int, int], None] | None = None,
 ) -> Exported:
     """Write a verified plan as a robot program.
 
@@ -76,19 +80,25 @@ def export(
         skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
         name: of the program; by default the plan's.
         version: of zerorev, for the comment block; by default the installed one.
+        workers: processes that check the holes; the program is the same.
+        progress: called with (holes checked, holes in all) before the first and after each.
 
     Raises:
         InputError: unknown controller.
         NotExportableError: the robot is another maker's, a hole has no verified motion, or the preflight found an
             error.
     """
-    steps = exporting(plan, controller, skip_failed=skip_failed, name=name, version=version)
+    steps = exporting(plan, controller, skip_failed=skip_failed, name=name, version=version, workers=workers)
+    checked = 0
     while True:
+        if progress:
+            progress(checked, len(plan.holes))
         try:
             next(steps)
         except StopIteration as end:
             exported: Exported = end.value
             return exported
+        checked += 1
 
 
 def exporting(
@@ -98,13 +108,14 @@ def exporting(
     skip_failed: bool = False,
     name: str | None = None,
     version: str | None = None,
+    workers: int = 1,
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
     if controller not in CONTROLLERS:
         raise InputError(f"unknown controller '{controller}'", where="controller", accepted=", ".join(CONTROLLERS))
     dialect = CONTROLLERS[controller]
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
-    verified = yield from _verified_anew(plan)
+    verified = yield from _verified_anew(plan, workers)
     program = build_program(verified, skip_failed=skip_failed)
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
@@ -113,15 +124,19 @@ def exporting(
     return Exported(dialect.write(program, called, findings, version), findings, called, dialect.suffix)
 
 
-def _verified_anew(plan: Plan) -> Generator[None, None, Plan]:
+def _verified_anew(plan: Plan, workers: int) -> Generator[None, None, Plan]:
     """The plan with each hole that passed its check held to it again; a plan file may have been altered since."""
     holes = []
-    for hole in plan.holes:
-        if hole.verified is not None and hole.verified.passed:
-            hole = replace(hole, verified=verify_hole(plan.robot, plan.tool, plan.settings, hole))
-        holes.append(hole)
-        yield
+    with Workers(partial(verify_hole, plan.robot, plan.tool, plan.settings), workers) as checkers:
+        outcomes = checkers.map(hole for hole in plan.holes if _passed(hole))
+        for hole in plan.holes:
+            holes.append(replace(hole, verified=next(outcomes)) if _passed(hole) else hole)
+            yield
     return replace(plan, holes=tuple(holes))
+
+
+def _passed(hole: HolePlan) -> bool:
+    return hole.verified is not None and hole.verified.passed
 
 
 def _sentence(finding: Finding) -> str:

@@ -160,7 +160,7 @@ class Work:
             self._let_go()
             progress = None
         try:
-            self.session.change(replace(taken or state, progress=progress, trouble=trouble))
+            self.session.change(replace(taken or state, progress=progress, trouble=trouble), of=task)
         except Exception:  # of a view; the work goes on
             logging.getLogger("zerorev").exception("a fault in the page")
 

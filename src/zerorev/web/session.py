@@ -33,6 +33,7 @@ class Session:
         self._views: list[View] = []
         self._listeners: list[tuple[str, Listener]] = []
         self._past: list[State] = []
+        self._edit: object = None  # what the last edit came of
 
     def watch(self, view: View) -> None:
         """Have a view told of every change from now on."""
@@ -59,10 +60,17 @@ class Session:
             if each == what:
                 listener(value)
 
-    def change(self, state: State) -> None:
-        """Show another state. Each view looks itself at what of it is not the same object any more."""
+    def change(self, state: State, of: object = None) -> None:
+        """Show another state. Each view looks itself at what of it is not the same object any more.
+
+        Args:
+            state: to be shown.
+            of: what it comes of, where that changes the job bit by bit: its changes count as one edit.
+        """
         if self.state.job is not None and state.job is not self.state.job:
-            self._past = [*self._past[1 - KEPT :], self.state]
+            if of is None or of is not self._edit:
+                self._past = [*self._past[1 - KEPT :], self.state]
+            self._edit = of
         self._show(state)
 
     @property
@@ -73,6 +81,7 @@ class Session:
     def undo(self) -> None:
         """Take the last edit of the job back; what has been found since stays where it still holds."""
         if self._past:
+            self._edit = None
             self._show(undone(self.state, self._past.pop()))
 
     def _show(self, state: State) -> None:

@@ -1,7 +1,8 @@
 // Said by the server when it ends: the page stays readable, and does not knock at a closed door.
 window.zerorevEnded = () => {
   window.socket?.io?.reconnection(false);
-  document.getElementById("popup")?.remove();
+  // hidden, not taken away: the lost connection still sets its attributes
+  document.getElementById("popup")?.style.setProperty("display", "none", "important");
   const note = document.createElement("div");
   note.className = "zr-ended";
   note.setAttribute("role", "alert");

@@ -13,7 +13,7 @@ from zerorev.report.palette import JOINT_COLOURS, signed
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled
-from zerorev.web.views.chart import INK, SURFACE, axis, chart, dashes, pairs, redraw
+from zerorev.web.views.chart import INK, SURFACE, axis, chart, dashes, pairs, redraw, tip
 
 __all__ = ["bracket", "options", "sentence"]
 
@@ -90,6 +90,7 @@ def options(rates: Bracket | None, names: tuple[str, ...]) -> dict[str, Any]:
     series = [
         {**line, "id": f"joint{i}", "name": names[i] if names else str(i), "z": 3,
          "data": [] if rates is None else _curve(rates, i, low, high),
+         "itemStyle": {"color": JOINT_COLOURS[i]},
          "lineStyle": {"color": JOINT_COLOURS[i], "width": 2, "type": dashes(i)}}
         for i in range(6)
     ]  # fmt: skip
@@ -97,6 +98,7 @@ def options(rates: Bracket | None, names: tuple[str, ...]) -> dict[str, Any]:
         "grid": {"left": 52, "right": 92, "top": 12, "bottom": 38},
         "xAxis": axis("spin at the target [deg]", 22, min=round(left, 2), max=round(right, 2)),
         "yAxis": axis("critical rate [deg/mm]", 36, min=round(low, 4), max=round(high, 4)),
+        "tooltip": tip("deg", "deg/mm", (1, 3), (round(low, 4), round(high, 4))),
         "series": [*series, _slopes(rates, line), _crossings(rates, names, low, high), _good(rates, low)],
     }
 

@@ -10,7 +10,7 @@ from nicegui import ui
 from zerorev.model._arrays import Array
 from zerorev.report.palette import DASHES
 
-__all__ = ["INK", "LINE", "MUTED", "SURFACE", "axis", "chart", "dashes", "pairs", "redraw"]
+__all__ = ["INK", "LINE", "MUTED", "SURFACE", "axis", "chart", "dashes", "pairs", "redraw", "tip"]
 
 # drawn as SVG, so that the colours follow the theme of the page without being drawn anew
 INK, MUTED, LINE, SURFACE = (f"var(--zr-{name})" for name in ("ink", "muted", "line", "surface"))
@@ -61,6 +61,43 @@ def axis(name: str = "", gap: int = 0, **options: Any) -> dict[str, Any]:
         "nameTextStyle": TEXT,
         **options,
     }
+
+
+def tip(across: str, up: str, digits: tuple[int, int], within: tuple[float, float] | None = None) -> dict[str, Any]:
+    """What stands beside the pointer: the values there of all curves of the chart that have a name.
+
+    Args:
+        across: unit of the place.
+        up: unit of the values.
+        digits: of the place and of the values.
+        within: values that lie outside are drawn at no height of their own, and are said to be beyond.
+    """
+    low, high = ("-Infinity", "Infinity") if within is None else within
+    words = f"""points => {{
+        const plain = text => String(text).replace(/[&<>"']/g, letter => '&#' + letter.charCodeAt(0) + ';');
+        const minus = text => text.replace('-', '\u2212');
+        const said = value => value > {high} ? 'beyond {high}' : value < {low} ? minus('beyond {low}')
+            : minus(value.toFixed({digits[1]}));
+        const named = points.filter(p => p.seriesType === 'line' && p.value?.[1] != null && !/\0/.test(p.seriesName));
+        if (!named.length) return '';
+        const rows = named.map(p => `<tr><td><span class="zr-tip-key" style="background:${{p.color}}"></span>
+            ${{plain(p.seriesName)}}</td><td>${{said(p.value[1])}}</td></tr>`).join('');
+        return `<table class="zr-tip"><caption>at ${{minus(named[0].value[0].toFixed({digits[0]}))}} {across},
+            in {up}</caption>${{rows}}</table>`;
+    }}"""
+    return {
+        "trigger": "axis",
+        "confine": True,
+        "transitionDuration": 0,
+        "backgroundColor": SURFACE,
+        "borderColor": "var(--zr-edge)",
+        "padding": [4, 8],
+        "textStyle": {"color": INK, "fontSize": 11.5, "fontFamily": "inherit"},
+        "extraCssText": "box-shadow: none; border-radius: 6px",
+        "axisPointer": {"type": "line", "animation": False, "lineStyle": {"color": MUTED, "type": "solid", "width": 1},
+                        "label": {"show": False}},
+        ":formatter": words,
+    }  # fmt: skip
 
 
 def dashes(joint: int, width: float = 2.0) -> str | list[float]:

@@ -16,7 +16,7 @@ from zerorev.report.terminal import duration, rate_text
 from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
-from zerorev.web.state import Progress, State, steered, with_hole, with_settings
+from zerorev.web.state import Progress, State, with_hole, with_settings
 
 __all__ = ["compute"]
 
@@ -74,14 +74,10 @@ def _wishes(session: Session, work: Work) -> None:
         branch = _choice(BRANCHES, "branch to search", lambda value: _branch(session, value))
         words = "the motion in hand becomes the hole's answer, evaluated and checked"
         keep = _button("Keep this motion", "push_pin", words, lambda: computing.keep(work))
-        words = "let the motion in hand go"
-        back = _button("Back to the plan", "undo", words, lambda: session.change(steered(session.state, None)))
 
     def draw(state: State) -> None:
         row.set_visibility(state.progress is None)
-        in_hand = state.steered is not None
-        keep.set_visibility(in_hand)
-        back.set_visibility(in_hand)
+        keep.set_visibility(state.steered is not None)
         if state.job is not None and state.hole is not None:
             legs.set_value(state.job.settings.legs)
             branch.set_value(ANY if state.hole.branch is None else state.hole.branch)

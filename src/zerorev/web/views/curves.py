@@ -14,7 +14,7 @@ from zerorev.report.palette import JOINT_COLOURS
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled
-from zerorev.web.views.chart import INK, MUTED, axis, chart, pairs, redraw
+from zerorev.web.views.chart import INK, MUTED, axis, chart, pairs, redraw, tip
 
 __all__ = ["curves", "options"]
 
@@ -80,7 +80,8 @@ def options(found: Curves | None, here: Look | None, constant: Look | None) -> d
         constant: where it would with constant spin.
     """
     charts = [_one(i, found, here, constant) for i in range(6)]
-    return {name: [part for each in charts for part in each[name]] for name in charts[0]}
+    parts = {name: [part for each in charts for part in each[name]] for name in charts[0]}
+    return parts | {"tooltip": tip("mm", "deg", (1, 2))}
 
 
 def _one(i: int, found: Curves | None, here: Look | None, constant: Look | None) -> dict[str, list[Any]]:
@@ -111,10 +112,11 @@ def _one(i: int, found: Curves | None, here: Look | None, constant: Look | None)
         "xAxis": [axis(gridIndex=i, **across)],
         "yAxis": [axis(gridIndex=i, min=round(low, 3), max=round(high, 3), splitNumber=3)],
         "series": [
-            {**on, "id": f"baseline{i}", "data": pairs(x, baseline, 3), "z": 2,
-             "lineStyle": {"color": MUTED, "width": 1.5, "type": [5, 3]}, "markLine": at_target, "markArea": beyond},
-            {**on, "id": f"planned{i}", "data": pairs(x, planned, 3), "z": 3,
-             "lineStyle": {"color": JOINT_COLOURS[i], "width": 2.2}},
+            {**on, "id": f"baseline{i}", "name": "constant spin", "data": pairs(x, baseline, 3), "z": 2,
+             "lineStyle": {"color": MUTED, "width": 1.5, "type": [5, 3]}, "itemStyle": {"color": MUTED},
+             "markLine": at_target, "markArea": beyond},
+            {**on, "id": f"planned{i}", "name": name or "joint", "data": pairs(x, planned, 3), "z": 3,
+             "lineStyle": {"color": JOINT_COLOURS[i], "width": 2.2}, "itemStyle": {"color": JOINT_COLOURS[i]}},
             {**on, "id": f"turns{i}", "type": "scatter", "z": 5, "symbol": CROSS, "symbolSize": 9,
              "data": [*_marks(i, constant, x, baseline, MUTED), *_marks(i, here, x, planned, INK)]},
             {**on, "id": f"cursor{i}", "data": [], "z": 4,

@@ -14,6 +14,7 @@ from typing import Any
 from nicegui import ui
 
 from zerorev.errors import NotExportableError, ZerorevError
+from zerorev.jobs import workers_for
 from zerorev.model.files import plan_to_json
 from zerorev.model.job_data import job_files
 from zerorev.model.plan import Finding, Plan
@@ -85,10 +86,11 @@ def _job(session: Session) -> None:
 def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None:
     """Make the program, then show what its preflight found, or why there is none."""
     plan = plan_of(session.state)
+    workers = workers_for(len(plan.holes), None)
 
     def run() -> Iterator[Exported | NotExportableError | None]:
         try:
-            yield (yield from exporting(plan, skip_failed=skip_failed))
+            yield (yield from exporting(plan, skip_failed=skip_failed, workers=workers))
         except NotExportableError as error:
             yield error
 

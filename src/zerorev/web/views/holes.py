@@ -44,7 +44,6 @@ PICKED = """e => {
     const row = e.api.getSelectedRows()[0];
     if (row && e.source !== 'api') getElement(%d).$emit('picked', row.id);
 }"""
-NARROW = "e => e.api.setColumnsVisible(['target', 'direction'], e.clientWidth > 800)"
 SHOW = """(api => {
     const node = api?.getRowNode(%s);
     if (!node) return;
@@ -156,22 +155,23 @@ def _by_id(state: State) -> dict[str, tuple[int, int]]:
 
 
 def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
-    number = {"type": "rightAligned", "width": 84}
+    number = {"type": "rightAligned", "width": 80}
     one = DIGITS.format(digits=1)
     return {
         "columnDefs": [
-            {"headerName": "Hole", "field": "id", "flex": 2, "minWidth": 96, "tooltipField": "id"},
+            {"headerName": "Hole", "field": "id", "flex": 2, "minWidth": 96, "tooltipField": "id",
+             "pinned": "left"},
             {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
-             "width": 104, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
+             "width": 92, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
              "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
                                 "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
-            {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 98},
-            {**number, "headerName": "To spare [mm]", "field": "margin", ":valueFormatter": one, "width": 112,
+            {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
+            {**number, "headerName": "To spare [mm]", "field": "margin", ":valueFormatter": one, "width": 108,
              "headerTooltip": "by how much the hole could be deeper without a reversal"},
-            {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 84},
-            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 96},
-            {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": 140, "sortable": False},
-            {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": 100, "sortable": False},
+            {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 78},
+            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 92},
+            {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": 124, "sortable": False},
+            {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": 84, "sortable": False},
         ],
         "rowData": rows,
         ":getRowId": "p => p.data.id",
@@ -179,7 +179,6 @@ def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
         ":navigateToNextCell": STEP,
         ":isExternalFilterPresent": "() => true",
         ":doesExternalFilterPass": "() => true",
-        ":onGridSizeChanged": NARROW,
         "rowHeight": 28,
         "headerHeight": 32,
         "animateRows": False,

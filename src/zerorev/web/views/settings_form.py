@@ -19,16 +19,28 @@ from zerorev.web.views.fields import Fields, ends, form, group, number
 
 __all__ = ["settings_dialog", "settings_of"]
 
-AS_IN_FILE = "weights"
+WEIGHTED = "weights"
 OBJECTIVES = {
     "travel": "least joint travel",
     "margin": "greatest slowest motion",
     "plunge_rotation": "least spin during the plunge",
+    WEIGHTED: "a weighted sum of criteria",
+}
+CRITERIA_WORDS = {
+    "travel": "joint travel",
+    "margin": "slowest joint",
+    "plunge_rotation": "spin in the plunge",
+    "tool_speed_change": "change of drill speed",
+    "limit_distance": "nearness to limits",
+    "compliance_axial": "give along the axis",
+    "compliance_lateral": "give across the axis",
+    "manipulability": "nearness to singularity",
 }
 RULES = {"pointwise": "at every point", "mean": "on the average of each leg"}
 LEGS = {"straight": "straight: spin even along each leg", "free": "free: spin varies along the axis"}
 DEPTHS = {False: "at the target, depth lost to the blend", True: "deeper, so that the depth is met"}
 MAY_BE_EMPTY = ("psi_bound_deg", "blend_shortfall_mm", "spindle_rpm")
+SIX_OR_NONE = ("joint_stiffness_nm_per_rad", "near_joints_deg")
 
 
 def settings_dialog(session: Session) -> Callable[[], None]:
@@ -62,8 +74,6 @@ def settings_dialog(session: Session) -> Callable[[], None]:
         job = session.state.job
         if job is None:
             return
-        weighted = {AS_IN_FILE: "weighted, as the file has it"} if job.settings.weights else {}
-        fields["objective",].set_options(OBJECTIVES | weighted)
         data = settings_data(job.settings)
         for path, field in fields.items():
             field.set_value(_shown(path, data))
@@ -85,10 +95,27 @@ def _motion(fields: Fields) -> None:
         fields.text(("psi_bound_deg",), "spins within ± [deg]", "psi-bound", placeholder="no bound")
         fields.choice(("legs",), "legs", "legs-setting", LEGS)
         fields.text(("max_twist_deg_per_mm",), "greatest twist of free legs [deg/mm]", "max-twist")
-    with group("What a reversal of each joint costs", "zr-six"):
+    with ui.element("div") as weights, group("What weighs how much; 0 or empty: nothing", "zr-four"):
+        for name, words in CRITERIA_WORDS.items():
+            fields.text(("objective", name), words, f"weigh-{name}")
+    weights.bind_visibility_from(fields["objective",], "value", value=WEIGHTED)
+    _six(fields, "reversal_weights", "What a reversal of each joint costs", "weight")
+    _six(
+        fields, "joint_stiffness_nm_per_rad",
+        "Stiffness of each joint [N m/rad], for the give at the tip; empty: not known", "stiffness",
+    )  # fmt: skip
+    _six(
+        fields, "near_joints_deg",
+        "Angles to which free turns are chosen nearest [deg]; empty: far from the limits", "near",
+    )  # fmt: skip
+
+
+def _six(fields: Fields, key: str, legend: str, name: str) -> None:
+    """A field a joint, and below them what is accepted."""
+    with group(legend, "zr-six"):
         for n in range(6):
-            fields.text(("reversal_weights", n), f"joint {n + 1}", f"weight-{n + 1}")
-    fields.note("reversal_weights")
+            fields.text((key, n), f"joint {n + 1}", f"{name}-{n + 1}")
+    fields.note(key)
 
 
 def _run(fields: Fields) -> None:
@@ -106,10 +133,15 @@ def _shown(path: FieldPath, data: dict[str, Any]) -> Any:
     """What stands in the field of a setting."""
     value: Any = data
     for part in path:
-        value = value[part]
+        if isinstance(value, dict):
+            value = value.get(str(part), "")
+        else:  # six numbers, or none; of one criterion that decides alone, no weights
+            value = value[part] if isinstance(value, list) and isinstance(part, int) else None
     if isinstance(value, dict):
-        return AS_IN_FILE
-    return "" if value is None else f"{value:.10g}" if isinstance(value, float) else value
+        return WEIGHTED
+    if isinstance(value, float):  # to the last bit, so that what is not touched stays the same
+        return short if float(short := f"{value:.10g}") == value else repr(value)
+    return "" if value is None else value
 
 
 def _values(fields: Fields) -> dict[FieldPath, Any]:
@@ -125,13 +157,22 @@ def settings_of(values: dict[FieldPath, Any], job: Job) -> tuple[Settings | None
         job: whose settings they take the place of.
     """
     data = settings_data(job.settings)
+    whole = {str(path[0]): value for path, value in values.items() if len(path) == 1}
+    parts: dict[str, dict[Any, Any]] = {}
     for path, value in values.items():
-        if path == ("objective",) and value == AS_IN_FILE:
-            continue
-        into: Any = data
-        for part in path[:-1]:
-            into = into[part]
-        into[path[-1]] = None if path[0] in MAY_BE_EMPTY and value == "" else value
+        if len(path) == 2:
+            parts.setdefault(str(path[0]), {})[path[1]] = value
+    weights = parts.pop("objective", None)
+    if whole.get("objective") == WEIGHTED:
+        del whole["objective"]
+        if weights is not None:
+            data["objective"] = {name: value for name, value in weights.items() if value != ""}
+    data |= {key: None if key in MAY_BE_EMPTY and value == "" else value for key, value in whole.items()}
+    for key, given in parts.items():
+        if key in SIX_OR_NONE:
+            data[key] = None if all(value == "" for value in given.values()) else [""] * 6
+        for part, value in given.items() if data[key] is not None else ():
+            data[key][part] = value
     if wrong := problems(SettingsForm, Document("", data)):
         return None, wrong
     try:

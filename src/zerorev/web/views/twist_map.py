@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from nicegui import background_tasks, run, ui
+from nicegui import background_tasks, ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
@@ -21,6 +22,7 @@ from zerorev.model.tool import Tool
 from zerorev.report import motion_look
 from zerorev.report import twist_map as maps
 from zerorev.report.twist_map_data import map_data, motion_data
+from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import State, Steered, shown, steered
 
@@ -81,6 +83,7 @@ class _TwistMap:
         self.passed: object = NOTHING  # what they were told of last by this map
         self.timer: asyncio.TimerHandle | None = None
         self.interval = SOONEST
+        self.drawing = asyncio.Lock()  # one map at a time: who steps through the holes waits for the last one alone
         self.element = _Element().classes("w-full h-full")
         for name in ("ready", "grab", "drag", "drop", "restore", "let_go", "choose"):
             self.element.on(name, getattr(self, f"on_{name}"))
@@ -240,8 +243,11 @@ class _TwistMap:
 
     async def draw_map(self, wanted: _Wanted) -> None:
         """Draw a map in a thread, and show it if it is still the one that is wanted."""
-        found = await run.io_bound(maps.twist_map, *wanted)
-        if wanted is self.drawn and found is not None:  # None: the app is ending
+        async with self.drawing:
+            if wanted is not self.drawn:
+                return
+            found = await aside(partial(maps.twist_map, *wanted))
+        if wanted is self.drawn:
             self.element.run_method("show_map", map_data(wanted.robot, found))
 
     def show_cursor(self, distance_mm: float | None) -> None:

@@ -1,0 +1,314 @@
+"""The best leg on a side of the critical rates: one dimension, the slope (theory §3).
+
+Lengths in m, angles in rad, rates outwards in rad/m. No kernel raises.
+`asked` is a `zerorev.search.problem.Asked` throughout.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.kernels._jit import kernel
+from zerorev.kernels.legs import GREATEST_MARGIN, PLUNGE_ROTATION, ROWS, judge_leg, trace_leg
+from zerorev.kernels.weigh import SIEVE_ERROR, sift, weigh_leg
+
+GEOMETRIC_SLOPES = 12
+SLOPES_BETWEEN = 4
+MAX_SLOPES = 1 + GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN
+ROOT_STEPS = 24
+ROOT_TOLERANCE = 1e-9
+GOLDEN_STEPS = 20
+GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
+
+
+@kernel
+def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-untyped-def]
+    """Slopes worth a look on one side of the critical rates of the joints to keep.
+
+    Args:
+        kappa: critical rates at the target [rad/m], shape (6,).
+        keep: whether a joint must keep its direction, shape (6,).
+        side: 1 above, -1 below.
+        psi_t: spin at the target [rad].
+        asked: `Asked`, for the steepest slope and the bound on the spin.
+        out: out, shape (MAX_SLOPES,): slopes in order away from the critical rates, the outermost of which, or the
+            bound, is the first.
+
+    Returns:
+        how many slopes were written.
+    """
+    # slopes are measured along the side: side * slope, from `nearest` to `farthest`
+    nearest, farthest = -asked.steepest, asked.steepest
+    if asked.psi_bound > 0.0:
+        nearest = max(nearest, (-asked.psi_bound - side * psi_t) / asked.depth)
+        farthest = min(farthest, (asked.psi_bound - side * psi_t) / asked.depth)
+    bracketed = False
+    for i in range(6):
+        if keep[i] and np.isfinite(kappa[i]):
+            nearest = max(nearest, side * kappa[i])
+            bracketed = True
+    if not bracketed:
+        nearest = max(nearest, 0.0)
+    if nearest >= farthest:
+        return 0
+    # the critical rates of the joints that may turn cut the side into pieces
+    anchors = np.empty(7)
+    anchors[0] = nearest
+    pieces = 1
+    for i in range(6):
+        if not keep[i] and nearest < side * kappa[i] < farthest:
+            anchors[pieces] = side * kappa[i]
+            pieces += 1
+    anchors = np.sort(anchors[:pieces])
+    out[0] = side * nearest
+    count = 1
+    for p in range(pieces - 1):
+        for j in range(SLOPES_BETWEEN):
+            out[count] = side * (anchors[p] + (anchors[p + 1] - anchors[p]) * (j + 0.5) / SLOPES_BETWEEN)
+            count += 1
+    span = farthest - anchors[pieces - 1]
+    for j in range(GEOMETRIC_SLOPES):
+        out[count] = side * (anchors[pieces - 1] + span * 1e-4 ** (1.0 - j / (GEOMETRIC_SLOPES - 1.0)))
+        count += 1
+    return count
+
+
+@kernel
+def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+    """Follow one slope and remember it where it is the best so far.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        psi_t: spin at the target [rad].
+        slope: twist rate [rad/m].
+        held: what the leg is held to at this target: (sense, keep, at_target), see `judge_leg`.
+        asked: `Asked`; limits that are infinite are not looked at.
+        mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
+        nodes: points on a leg.
+        work: room for `fields`.
+        best: in and out, shape (3,): least cost, its slope, and the greatest margin seen.
+
+    Returns:
+        cost: inf where the slope will not do.
+        excess: by how much it does [rad/m]; negative where it does not, -inf out of reach.
+        margin: see `judge_leg`; beyond a limit, less than asked; -inf out of reach.
+    """
+    if asked.turn_inside and asked.lower[0] > -np.inf:
+        # a joint that turns round may come nearest to a limit anywhere
+        leg = np.empty((ROWS, 6))
+        if not trace_leg(arm, plane, branch, psi_t, slope, asked.depth, nodes, work, leg):
+            return np.inf, -np.inf, -np.inf
+        margin, slack, travel = judge_leg(leg, held[0], held[1], held[2], asked.depth, asked)
+    else:
+        margin, slack, travel = weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work)
+    if margin == -np.inf:
+        return np.inf, -np.inf, -np.inf
+    if slack < 0.0:
+        # as if it lacked margin: so there is a way to climb back within the limits
+        margin = min(margin, asked.min_rate + slack / asked.depth)
+    best[2] = max(best[2], margin)
+    if margin < asked.min_rate:
+        return np.inf, margin - asked.min_rate, margin
+    cost = travel
+    if mode == GREATEST_MARGIN:
+        cost = -margin
+    elif mode == PLUNGE_ROTATION:
+        cost = abs(slope)
+    if cost < best[0]:
+        best[0], best[1] = cost, slope
+    return cost, min(margin - asked.min_rate, slack / asked.depth), margin
+
+
+@kernel
+def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+    """The best slope on one side of the critical rates (theory §3).
+
+    The slopes that keep margin and limits form a few bounded intervals; every interval's ends are located by a root
+    search and its inner dips by golden section. Where no candidate keeps the margin, the greatest margin is climbed
+    to, so that a thin interval between two candidates is not missed.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        psi_t: spin at the target [rad].
+        side: 1 above the critical rates, -1 below.
+        kappa: critical rates at the target, shape (6,).
+        held: see `try_slope`.
+        asked: `Asked`.
+        mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
+        nodes: points on a leg.
+        work: room for `fields`.
+        best: out, shape (3,): least cost (inf where no slope will do), its slope, and the greatest margin seen (-inf
+            where none can be run).
+    """
+    slopes, ceiling, estimate = np.empty(MAX_SLOPES), np.empty(MAX_SLOPES), np.empty(MAX_SLOPES)
+    count = slope_candidates(kappa, held[1], side, psi_t, asked, slopes)
+    best[:] = np.inf, np.nan, -np.inf
+    ends = np.empty((MAX_SLOPES, 6))
+    sift(arm, plane, branch, psi_t, slopes, count, held[0], held[1], asked, work, ceiling, estimate, ends)
+    if mode == GREATEST_MARGIN:
+        estimate[:count] = -ceiling[:count]
+    elif mode == PLUNGE_ROTATION:
+        estimate[:count] = np.abs(slopes[:count])
+
+    # runs of candidates that may do: from the most promising of each on, until one does
+    first = 0
+    while mode != GREATEST_MARGIN and first < count:
+        end = first
+        while end < count and ceiling[end] >= asked.min_rate:
+            end += 1
+        if end > first:
+            least = np.inf
+            for j in range(max(first - 1, 0), min(end + 1, count)):
+                least = np.minimum(least, estimate[j])
+            if least * (1.0 - SIEVE_ERROR) < best[0]:
+                for j in first + np.argsort(estimate[first:end]):
+                    cost, excess, _ = try_slope(
+                        arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best
+                    )
+                    if cost < np.inf:
+                        _settle(
+                            arm, plane, branch, psi_t, slopes[:count], estimate, j, cost, excess, held, asked, mode,
+                            nodes, work, best,
+                        )  # fmt: skip
+                        break
+        first = end + 1
+    if best[0] < np.inf:
+        return
+
+    # none does: climb to the greatest margin, beginning with the candidate that has it
+    peak, peak_margin = -1, -np.inf
+    for j in np.argsort(-ceiling[:count]):
+        if ceiling[j] <= peak_margin:
+            break
+        margin = try_slope(arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best)[2]
+        if margin > peak_margin:
+            peak, peak_margin = j, margin
+    if peak < 0:
+        return
+    a, b = slopes[max(peak - 1, 0)], slopes[min(peak + 1, count - 1)]
+    _golden(arm, plane, branch, psi_t, a, b, True, held, asked, mode, nodes, work, best)
+    if mode == GREATEST_MARGIN or best[0] == np.inf:
+        return
+    # a thin interval was found: its ends lie on either side of it, before the next candidates
+    found = best[1]
+    excess = try_slope(arm, plane, branch, psi_t, found, held, asked, mode, nodes, work, best)[1]
+    for end in (a, b):
+        _interval_end(arm, plane, branch, psi_t, found, excess, end, -np.inf, held, asked, mode, nodes, work, best)
+
+
+@kernel
+def _settle(arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+    """From a candidate that will do, go to where the cost is least: the end of its interval, or a dip inside."""
+    low, high = slopes[j], slopes[j]
+    for k in (-1, 1):
+        while 0 <= j + k < slopes.shape[0]:
+            at_other, lacks, _ = try_slope(
+                arm, plane, branch, psi_t, slopes[j + k], held, asked, mode, nodes, work, best
+            )
+            if not at_other < cost:
+                break
+            # the rough look was mistaken about which is the cheaper
+            low, j, cost, excess = slopes[j], j + k, at_other, lacks
+        if not 0 <= j + k < slopes.shape[0]:
+            end = slopes[j]
+        elif at_other < np.inf:
+            end = slopes[j + k]
+        else:
+            # the cost may fall towards the end of the interval, or dip on the way there
+            onward = slopes[j] + 0.1 * (slopes[j + k] - slopes[j])
+            falls = try_slope(arm, plane, branch, psi_t, onward, held, asked, mode, nodes, work, best)[0] < cost
+            if not (falls or estimate[j + k] < estimate[j]):
+                end = onward
+            else:
+                end, at_end = _interval_end(
+                    arm, plane, branch, psi_t, slopes[j], excess, slopes[j + k], lacks, held, asked, mode, nodes, work,
+                    best,
+                )  # fmt: skip
+                # from the end inwards the cost may still fall
+                probe = end + 0.1 * (slopes[j] - end)
+                at_probe, _, _ = try_slope(arm, plane, branch, psi_t, probe, held, asked, mode, nodes, work, best)
+                if at_end < cost and at_end <= at_probe:
+                    return
+        if k < 0:
+            low = end
+        else:
+            high = end
+    _golden(arm, plane, branch, psi_t, low, high, False, held, asked, mode, nodes, work, best)
+
+
+@kernel
+def _golden(arm, plane, branch, psi_t, a, b, climb, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+    """Golden section between two slopes, up to the greatest margin or down to the least cost."""
+    x, y = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
+    at_x = try_slope(arm, plane, branch, psi_t, x, held, asked, mode, nodes, work, best)
+    at_y = try_slope(arm, plane, branch, psi_t, y, held, asked, mode, nodes, work, best)
+    at_a, at_b = np.nan, np.nan
+    for _ in range(GOLDEN_STEPS):
+        if abs(b - a) < ROOT_TOLERANCE:
+            break
+        if climb and mode != GREATEST_MARGIN:
+            # enough is enough, and where too little can be gained it will not be
+            if best[2] >= asked.min_rate:
+                break
+            if best[2] + most_gained(a, x, y, b, at_a, at_x[2], at_y[2], at_b) < asked.min_rate:
+                break
+        if at_x[2] >= at_y[2] if climb else at_x[0] <= at_y[0]:
+            b, at_b = y, at_y[2]
+            y, at_y = x, at_x
+            x = b - GOLDEN * (b - a)
+            at_x = try_slope(arm, plane, branch, psi_t, x, held, asked, mode, nodes, work, best)
+        else:
+            a, at_a = x, at_x[2]
+            x, at_x = y, at_y
+            y = a + GOLDEN * (b - a)
+            at_y = try_slope(arm, plane, branch, psi_t, y, held, asked, mode, nodes, work, best)
+
+
+@kernel
+def most_gained(a, x, y, b, at_a, at_x, at_y, at_b):  # type: ignore[no-untyped-def]
+    """How far a function between a and b can lie beyond all that is known of it, if it has one peak and is concave.
+
+    The margin, the least of many rates that are nearly linear, is nearly so. What is not known of the ends is NaN.
+    """
+    if not (np.isfinite(at_x + at_y) and (np.isfinite(at_a) or np.isfinite(at_b))):
+        return np.inf
+    steepest = abs(at_y - at_x) / abs(y - x)
+    if np.isfinite(at_a):
+        steepest = max(steepest, abs(at_x - at_a) / abs(x - a))
+    if np.isfinite(at_b):
+        steepest = max(steepest, abs(at_b - at_y) / abs(b - y))
+    return steepest * abs(b - a)
+
+
+@kernel
+def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+    """Locate where a slope just stops doing: regula falsi (Illinois), bisection where one side cannot be run.
+
+    Returns:
+        the last slope that will do, and its cost; inf where that is `inside` itself.
+    """
+    kept = 0
+    at_end, at_excess = np.inf, f_in
+    for _ in range(ROOT_STEPS):
+        if abs(outside - inside) < ROOT_TOLERANCE * (1.0 + abs(inside)) or at_excess < ROOT_TOLERANCE:
+            break
+        share = 0.5
+        if f_out > -np.inf and f_in > 0.0:
+            share = min(max(f_in / (f_in - f_out), 1e-3), 1.0 - 1e-3)
+        middle = inside + share * (outside - inside)
+        cost, excess, _margin = try_slope(arm, plane, branch, psi_t, middle, held, asked, mode, nodes, work, best)
+        if cost < np.inf:
+            inside, f_in, at_end, at_excess = middle, excess, cost, excess
+            if kept > 0:
+                f_out *= 0.5
+            kept = 1
+        else:
+            outside, f_out = middle, excess
+            if kept < 0:
+                f_in *= 0.5
+            kept = -1
+    return inside, at_end
