@@ -159,7 +159,7 @@ def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
     one = DIGITS.format(digits=1)
     return {
         "columnDefs": [
-            {"headerName": "Hole", "field": "id", "flex": 2, "minWidth": 96, "tooltipField": "id",
+            {"headerName": "Hole", "field": "id", "width": 128, "tooltipField": "id",
              "pinned": "left"},
             {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
              "width": 92, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
