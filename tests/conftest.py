@@ -17,6 +17,21 @@ settings.register_profile("deterministic", derandomize=True, deadline=None, data
 settings.load_profile("deterministic")
 
 
+def pytest_terminal_summary(terminalreporter):
+    """Tell the figures that tests have measured, which go with their reports, also from the processes of xdist."""
+    reports = [report for kind in terminalreporter.stats.values() for report in kind]
+    told = [
+        text
+        for report in reports
+        for name, text in getattr(report, "user_properties", ())
+        if name == "measured" and report.when == "call"
+    ]
+    if told:
+        terminalreporter.section("measured")
+        for text in told:
+            terminalreporter.write_line(text)
+
+
 @pytest.fixture(scope="session")
 def robot():
     """KR 6 R700-2, the thesis' robot."""
