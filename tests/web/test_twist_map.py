@@ -65,10 +65,10 @@ def on_page(session, monkeypatch):
         monkeypatch.setattr(view, "_Element", lambda: component)
         monkeypatch.setattr(view.ui, "add_css", lambda _: None)
 
-        async def soon(function, *args):
-            return function(*args)
+        async def soon(call):
+            return call()
 
-        monkeypatch.setattr(view.run, "io_bound", soon)
+        monkeypatch.setattr(view, "aside", soon)
         tasks = []
         monkeypatch.setattr(view.background_tasks, "create", lambda job: tasks.append(asyncio.ensure_future(job)))
 
@@ -317,3 +317,25 @@ def test_an_answer_takes_the_place_of_what_was_in_hand(on_page, session):
         assert component.last("show_motion")["reversals"] == 0
 
     on_page(exchange)
+
+
+def test_who_steps_through_the_holes_waits_for_the_last_map_alone(on_page, session, monkeypatch):
+    """A map that is not wanted any more when its turn comes is not drawn."""
+    asked, holes = [], [hole.id for hole in session.state.job.holes]
+
+    async def exchange(component, do):
+        gate = asyncio.Event()
+
+        async def slowly(call):
+            asked.append(call.args[2].id)
+            await gate.wait()
+            return call()
+
+        monkeypatch.setattr(view, "aside", slowly)
+        for hole in (*holes[1:], holes[0], holes[1]):
+            session.change(selected(session.state, hole))
+            await asyncio.sleep(0)
+        gate.set()
+
+    on_page(exchange)
+    assert asked == [holes[1], holes[1]]

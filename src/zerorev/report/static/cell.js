@@ -145,9 +145,18 @@ export class Cell {
     this._showRibbons();
   }
 
+  // whether a motion is in somebody's hand: where drawing is slow, it would hold up the hand, so it waits for the end
+  inHand(held) {
+    this.handed = held;
+    if (held) return;
+    if (this.slow) this.restsAt = performance.now() + REST; // its last step is on the way
+    this.invalidate();
+  }
+
   invalidate(moved = false) {
     if (this.failed) return;
     if (moved) this.renderer.shadowMap.needsUpdate = true;
+    if (this.slow && this.handed) return;
     clearTimeout(this.resting);
     const rest = (this.restsAt ?? 0) - performance.now();
     if (rest > 0 && !this.playing) this.resting = setTimeout(() => this.invalidate(), rest);

@@ -9,9 +9,12 @@ export default {
       pickCell: (index) => this.$emit("pick_cell", { index }),
       seek: (x) => this.$emit("seek", { x }),
     });
+    this.onHand = (event) => this.cell.inHand(event.detail);
+    window.addEventListener("zerorev-in-hand", this.onHand); // of the twist map
     this.$emit("ready", {});
   },
   unmounted() {
+    window.removeEventListener("zerorev-in-hand", this.onHand);
     this.cell.dispose();
   },
   methods: {

@@ -94,6 +94,7 @@ export default {
     this.themes.disconnect();
     window.removeEventListener("keydown", this.onEscape);
     clearTimeout(this.settling);
+    this.letGo();
   },
 
   methods: {
@@ -243,7 +244,7 @@ export default {
       if (!this.held.moved) {
         if (Math.hypot(x - this.held.x, y - this.held.y) < 2) return; // a click is no drag
         this.held.moved = true;
-        this.$emit("grab");
+        this.take();
       }
       const along = ((x - this.held.x) / this.plane.innerWidth) * 2 * this.plane.reach;
       const outwards = n < this.legs.corner ? -1 : 1;
@@ -252,6 +253,16 @@ export default {
         event.shiftKey ? turned(start, by) : moved(start, n, start[n].psi + by, inner ? start[n].standoff + outwards * along : null),
         event.timeStamp,
       );
+    },
+
+    /** The motion is taken in hand: other views may want to know. */
+    take() {
+      window.dispatchEvent(new CustomEvent("zerorev-in-hand", { detail: true }));
+      this.$emit("grab");
+    },
+
+    letGo() {
+      window.dispatchEvent(new CustomEvent("zerorev-in-hand", { detail: false }));
     },
 
     release() {
@@ -271,7 +282,9 @@ export default {
       this.legs.points = held.start;
       this.legs.draw();
       this.waiting = this.next = null;
-      if (held.moved) this.$emit("restore");
+      if (!held.moved) return;
+      this.letGo();
+      this.$emit("restore");
     },
 
     letHandleGo() {
@@ -331,7 +344,7 @@ export default {
 
     /** A change by key: it counts as let go when no other follows. */
     change(points, asked) {
-      if (!this.settling) this.$emit("grab");
+      if (!this.settling) this.take();
       clearTimeout(this.settling);
       this.settling = setTimeout(() => {
         this.settling = null;
@@ -360,6 +373,7 @@ export default {
     },
 
     drop() {
+      this.letGo();
       this.next = this.waiting = null;
       this.$emit("drop", { points: this.list() });
     },

@@ -35,6 +35,7 @@ OWN = -1  # branch: that of the motion
 NOTHING = object()
 CHOICES = {"all": None, **{str(branch): branch for branch in range(8)}}
 MOST_POINTS = 200
+FORGET = 0.997  # how fast a slow update is forgotten: in some seconds
 SLOW = 45.0  # [ms] from pointer to count, from which on they follow less often
 
 
@@ -138,7 +139,7 @@ class _TwistMap:
             return
         self.show_motion(int(event.args["seq"]))
         slow = float(event.args.get("ms", 0.0)) > SLOW
-        self.interval = min(2 * self.interval, LATEST) if slow else max(0.99 * self.interval, SOONEST)
+        self.interval = min(2 * self.interval, LATEST) if slow else max(FORGET * self.interval, SOONEST)
         rests = self.interval > TOO_LATE
         if rests:
             self.stop_timer()
