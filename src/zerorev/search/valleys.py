@@ -175,14 +175,26 @@ class Valleys:
 
     def _descend(self, keep: Mask, asked: Asked, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
         """The bottom of the valley around one spin of the grid."""
-        step = self.step
-        low, high = self.psi[n] - step, self.psi[n] + step
+        return self._followed(keep, asked, mode, posture, self.psi[n], self.step, NODES, DESCENT_STEPS, bound)
+
+    def _followed(
+        self,
+        keep: Mask,
+        asked: Asked,
+        mode: int,
+        posture: int,
+        spin: float,
+        around: float,
+        nodes: int,
+        steps: int,
+        bound: float = np.inf,
+    ) -> _Pair | None:
+        """The best pair around a spin; where it lies at the edge of what is looked at, the valley goes on beyond it."""
         for _ in range(MOST_SHIFTS):
-            pair = self._bottom(keep, asked, mode, posture, low, high, NODES, DESCENT_STEPS, bound)
-            if pair is None or low + 0.02 * step < pair.psi_t < high - 0.02 * step:
+            pair = self._bottom(keep, asked, mode, posture, spin - around, spin + around, nodes, steps, bound)
+            if pair is None or abs(pair.psi_t - spin) < 0.98 * around:
                 break
-            # the rough look was mistaken about where the bottom is: go on over the edge
-            low, high = (pair.psi_t - step, pair.psi_t + step)
+            spin = pair.psi_t
         return pair
 
     def _shoulders(self, keep: Mask, asked: Asked, mode: int, value: Array, posture: int, n: int) -> list[int]:
@@ -228,12 +240,9 @@ class Valleys:
         """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
         wanted = asked.min_rate
         around = 0.02 * self.step
-        pair = (
-            self._bottom(
-                keep, asked, mode, pair.branch // 2, pair.psi_t - around, pair.psi_t + around, NODES, POLISH_STEPS
-            )
-            or pair
-        )
+        # few points foretell the travel of a leg to some 0.1 %, and so where a flat valley is lowest only roughly
+        posture = pair.branch // 2
+        pair = self._followed(keep, asked, mode, posture, pair.psi_t, around, FINE_NODES, POLISH_STEPS) or pair
         around /= 30
         found, shy = None, LIMIT_SLACK
         for _ in range(6):
