@@ -27,6 +27,7 @@ from zerorev.kernels.legs import (
     joint_travel,
     trace_leg,
 )
+from zerorev.kernels.order import order_of
 from zerorev.kernels.pairs import turns_fit
 
 EVEN_SLOPES = 48
@@ -62,7 +63,7 @@ def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-d
     if pieces == 0:
         anchors[0] = min(max(0.0, low), high)
         pieces = 1
-    anchors = np.sort(anchors[:pieces])
+    anchors = anchors[order_of(anchors[:pieces])]
     marked = np.zeros(MAX_FAN)
     for p in range(pieces):
         out[count], marked[count] = anchors[p], 1.0
@@ -82,7 +83,7 @@ def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-d
     if low < 0.0 < high:  # the spin held
         out[count] = 0.0
         count += 1
-    order = np.argsort(out[:count])
+    order = order_of(out[:count])
     out[:count] = out[:count][order]
     for j in range(count):
         critical[j] = marked[order[j]] > 0.0

@@ -15,6 +15,7 @@ from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
 from zerorev.kernels.field import BLOCK, PSI, STANDOFF, THETA_PSI, fields
 from zerorev.kernels.legs import TRAVEL
+from zerorev.kernels.order import order_of
 from zerorev.kernels.pairs import take_turns, turn_choices
 from zerorev.kernels.tube import KEPT, LEAST_NODES, MAX_ROWS, WIDTH, admissible, march, workspace
 
@@ -330,7 +331,7 @@ def scan(arm, plane, psi, branches, held, grain, longest, worth, out):  # type: 
     out[:] = 0.0
     deepest = 0.0
     # deepest first: what limits leave of a leg is never deeper than the leg
-    for place in np.argsort(-depths):
+    for place in order_of(depths)[::-1]:
         posture, n = place // count, place % count
         if depths[place] <= worth * deepest:
             break

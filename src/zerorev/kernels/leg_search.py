@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.legs import GREATEST_MARGIN, PLUNGE_ROTATION, ROWS, judge_leg, trace_leg
+from zerorev.kernels.order import order_of
 from zerorev.kernels.weigh import SIEVE_ERROR, sift, weigh_leg
 
 GEOMETRIC_SLOPES = 12
@@ -59,7 +60,7 @@ def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-u
         if not keep[i] and nearest < side * kappa[i] < farthest:
             anchors[pieces] = side * kappa[i]
             pieces += 1
-    anchors = np.sort(anchors[:pieces])
+    anchors = anchors[order_of(anchors[:pieces])]
     out[0] = side * nearest
     count = 1
     for p in range(pieces - 1):
@@ -165,7 +166,8 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
             for j in range(max(first - 1, 0), min(end + 1, count)):
                 least = np.minimum(least, estimate[j])
             if least * (1.0 - SIEVE_ERROR) < best[0]:
-                for j in first + np.argsort(estimate[first:end]):
+                for k in order_of(estimate[first:end]):
+                    j = first + k
                     cost, excess, _ = try_slope(
                         arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best
                     )
@@ -181,7 +183,9 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
 
     # none does: climb to the greatest margin, beginning with the candidate that has it
     peak, peak_margin = -1, -np.inf
-    for j in np.argsort(-ceiling[:count]):
+    for k in range(count):
+        estimate[k] = -ceiling[k]
+    for j in order_of(estimate[:count]):
         if ceiling[j] <= peak_margin:
             break
         margin = try_slope(arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best)[2]
