@@ -29,6 +29,7 @@ MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
 CANDIDATES = 8  # valleys gone down, at most
 PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
+LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] that a leg is asked for beyond what was missing between its points
 WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
 
 
@@ -261,7 +262,7 @@ class Valleys:
                 short, shy = 0.0, 4.0 * shy
                 asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
             # the sampled legs did not see the lowest point: ask for what was missing, and look again
-            asked = asked._replace(min_rate=asked.min_rate + max(1.5 * short, LEAST_RATE))
+            asked = asked._replace(min_rate=asked.min_rate + max(1.5 * short, LEAST_MORE))
         return found
 
     def _motion(self, pair: _Pair) -> Found | None:
