@@ -8,7 +8,11 @@ import sys
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
+
+from zerorev.kernels import _jit
+from zerorev.kernels.order import order_of
 
 MODULE = """
 from typing import NamedTuple
@@ -25,7 +29,24 @@ print(twice({name}(21.0)))
 """
 
 
-@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
+compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
+
+
+@compiled
+def test_a_kernel_is_stale_once_another_file_of_kernels_changes(monkeypatch: pytest.MonkeyPatch):
+    """Numba looks at a kernel's own file alone; but what it calls from other files is compiled into it."""
+
+    def cached() -> dict[object, object]:
+        return _jit._Cache(order_of.py_func)._cache_file._load_index()
+
+    order_of(np.zeros(3))
+    assert cached()
+    (name, when, size), *others = _jit._stamp()
+    monkeypatch.setattr(_jit, "_stamp", lambda: ((name, when + 1.0, size), *others))
+    assert not cached()
+
+
+@compiled
 def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(tmp_path: Path):
     def run(name: str) -> str:
         (tmp_path / "asking.py").write_text(MODULE.format(name=name))

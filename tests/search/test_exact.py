@@ -21,6 +21,9 @@ from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import joints_along
 from zerorev.search.exact import can_run, search
+from zerorev.search.problem import Problem
+from zerorev.search.straight import LEAST_RATE
+from zerorev.search.valleys import Valleys
 from zerorev.verify.check import verify_hole
 
 NO_THRESHOLD = Settings(min_rate=0.0)
@@ -351,6 +354,34 @@ class TestFlatValley:
         score = evaluate(case.robot, case.tool, case.hole, peer, found.branch).score
         assert score.reversals == 0
         assert found.score.travel <= score.travel
+
+
+class TestBetweenTheNodes:
+    """What 96 points of a leg do not see is asked for, and no more than that (random holes near their deepest)."""
+
+    @pytest.mark.parametrize(
+        ("seed", "depth", "travel"),
+        [
+            (1110, 0.043455181016217266, 155.113),
+            (1122, 0.04925786154663216, 193.2012),
+            (1148, 0.037453502699186375, 140.414),
+        ],
+    )
+    def test_a_dip_between_them_does_not_turn_the_search_away(self, seed, depth, travel):
+        """All three ended with a joint that turns round and back, and so as holes where zero is not to be had."""
+        case = drilled(random_place(seed), depth)
+        problem = Problem(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        found = Valleys(problem, problem.branches).best_motion(np.ones(6, dtype=bool))
+        assert found.reversals == 0
+        assert travel_deg(found) < travel
+        assert found.score.min_rate.min() >= 0.5 * LEAST_RATE
+
+    def test_where_joints_reverse_the_valley_is_gone_down_along_its_edge(self):
+        """Random hole 1159: SciPy's evolution from within 2 deg of the answer bettered it by 0.008 deg."""
+        case = drilled(random_place(1159), 0.052375893186591437)
+        found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        assert found.reversals == 5
+        assert travel_deg(found) < 159.87160
 
 
 class TestToolThroughTheWristCentre:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numba
 from numba.core import event
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 
@@ -26,7 +28,15 @@ class _Cache(FunctionCache):
     plan load in 0.2 s. It still does so before it compiles anything. Loading itself imports only the modules of Numba
     that a kernel's functions are from; so as to keep SciPy out, kernels that a plan needs call nothing of
     `numba.np.arraymath` (`np.round`, `np.min`, ...; `np.rint` and `np.minimum` are not among them).
+
+    Numba takes a cached kernel for fresh as long as its own file is. But a kernel holds what it calls from other files,
+    so here a change to any file of kernels makes all of them stale.
     """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        stamp = self._impl.locator.get_source_stamp(), _stamp()
+        self._cache_file = IndexDataCacheFile(self._cache_path, self._impl.filename_base, stamp)  # type: ignore[no-untyped-call]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         rtsys.initialize(target_context)  # what allocates arrays
@@ -39,11 +49,18 @@ class _Cache(FunctionCache):
             return None
 
 
+@cache
+def _stamp() -> tuple[tuple[str, float, int], ...]:
+    """Name, time of change and size of all files of kernels."""
+    files = sorted(Path(__file__).parent.glob("*.py"))
+    return tuple((file.name, file.stat().st_mtime, file.stat().st_size) for file in files)
+
+
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function at its first call with arguments of new types, or load it if it was compiled before."""
     compiled = _compiled(function)
     if isinstance(compiled, Dispatcher):  # not so with NUMBA_DISABLE_JIT
-        compiled._cache = _Cache(function)  # type: ignore[attr-defined, no-untyped-call]
+        compiled._cache = _Cache(function)  # type: ignore[attr-defined]
     return compiled
 
 

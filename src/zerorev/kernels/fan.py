@@ -21,7 +21,6 @@ from zerorev.kernels.legs import (
     LEAST_RATE,
     NIL,
     PLUNGE_ROTATION,
-    ROWS,
     TARGET_RATE,
     TURNS,
     joint_travel,
@@ -32,7 +31,6 @@ from zerorev.kernels.pairs import turns_fit
 
 EVEN_SLOPES = 48
 MAX_FAN = 7 + 2 * GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN + EVEN_SLOPES
-COMPASS_STEPS = 40
 
 
 @kernel
@@ -234,61 +232,3 @@ def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: 
                             and turns_fit(legs[x], legs[y], flip == 1, principal[flip], asked)
                         ):  # fmt: skip
                             best[0], best[1], best[2], best[3], best[4] = cost, lack, value, a, b
-
-
-@kernel
-def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  # type: ignore[no-untyped-def]
-    """`judge_pair` of (psi_t, slope, slope), inf where it cannot be run; `legs` is room for two legs."""
-    psi_t, a, b = point
-    if asked.psi_bound > 0.0 and (
-        max(abs(psi_t), abs(psi_t + a * asked.depth), abs(psi_t + b * asked.depth)) > asked.psi_bound
-    ):
-        return np.inf, np.inf, np.inf
-    if max(abs(a), abs(b)) > asked.steepest:
-        return np.inf, np.inf, np.inf
-    cs, work = np.empty((6, 2)), np.empty(ROOM)
-    theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
-    if not twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi):
-        return np.inf, np.inf, np.inf
-    controller_angles(arm, cs, branch % 2 == 1, principal)
-    if not (
-        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, work, legs[0])
-        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, work, legs[1])
-        and turns_fit(legs[0], legs[1], False, principal, asked)
-    ):
-        return np.inf, np.inf, np.inf
-    return judge_pair(legs[0], legs[1], a, b, weights, asked, mode)
-
-
-@kernel
-def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
-    """Compass search from a pair of legs: any of its three figures may move, alone or together, by ever less.
-
-    Args:
-        arm: `ArmGeometry`.
-        plane: `TwistPlane`.
-        branch: 0..7.
-        point: in and out, shape (3,): psi_t [rad] and the two slopes [rad/m].
-        step: of psi_t, to begin with [rad].
-        weights: see `judge_pair`.
-        asked: `Asked`.
-        mode: see `judge_pair`.
-        nodes: points on a leg.
-        best: out, shape (3,): cost, lack and value.
-    """
-    legs = np.empty((2, ROWS, 6))
-    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
-    tried = np.empty(3)
-    for _ in range(COMPASS_STEPS):
-        stuck = True
-        for move in range(27):
-            tried[0] = point[0] + (move % 3 - 1) * step
-            tried[1] = point[1] + (move // 3 % 3 - 1) * step / asked.depth
-            tried[2] = point[2] + (move // 9 - 1) * step / asked.depth
-            cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
-            if is_better(cost, lack, value, best):
-                best[0], best[1], best[2] = cost, lack, value
-                point[:] = tried
-                stuck = False
-        if stuck:
-            step *= 0.5

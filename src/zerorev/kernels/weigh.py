@@ -89,14 +89,18 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
     step = asked.depth / (nodes - 1)
     lay_leg(arm, plane, branch, psi_t, slope, asked.depth, held, asked, nodes, work)
     five = flip_sign(arm, branch)
-    worst, at, motion = np.inf, 0, 0.0
+    worst, motion = np.inf, 0.0
     for n in range(nodes):
         motion += work[MOTION * BLOCK + n]
-        if work[WORST * BLOCK + n] < worst:
-            worst, at = work[WORST * BLOCK + n], n
+        worst = min(worst, work[WORST * BLOCK + n])
     if np.isnan(motion):
         return -np.inf, -np.inf, np.inf
-    worst = min(worst, between_nodes(work, min(max(at, 1), nodes - 2)))
+    # the lowest point lies at the lowest node or next to it, but another joint may dip deeper elsewhere between two
+    for n in range(1, nodes - 1):
+        here = work[WORST * BLOCK + n]
+        dips = here <= work[WORST * BLOCK + n - 1] and here <= work[WORST * BLOCK + n + 1]
+        if dips or n == 1 or n == nodes - 2:
+            worst = min(worst, between_nodes(work, n))
     slack = np.inf
     if asked.mean_rule or asked.lower[0] > -np.inf:
         for i in range(6):

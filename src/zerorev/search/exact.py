@@ -5,7 +5,8 @@ counted (`survey`), which bounds the fewest reversals from above; then every set
 out is tried, cheapest first, as the grid may have missed a thin one.
 
 Where joints reverse a coarse look tells little of the travel: a leg may travel a third less between two of its slopes.
-So each set is tried on each branch by itself, and none is given up for what another branch has.
+So each set is tried on each branch by itself, and none is given up for what another branch has. The best of all is gone
+down from once more (`survey.settled`): what joints that may turn do is no set's own, and the survey is coarse.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.problem import SAME_COST, Found, Mask, Problem
-from zerorev.search.survey import survey, surveyed
+from zerorev.search.survey import settled, survey, surveyed
 from zerorev.search.valleys import Valleys
 
 __all__ = ["can_run", "search"]
@@ -54,7 +55,7 @@ def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | 
             break
         kept = [motion for line in lines for motion in line.motions(keep)]
         best = min([best, *kept], key=problem.rank)
-    return best
+    return settled(problem, best)
 
 
 def can_run(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> bool:

@@ -12,7 +12,7 @@ __all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "LONGEST_TWIST", "straight_motio
 LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 GRID = 240  # spins at the target in one turn
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
-LEAST_RATE = float(np.deg2rad(1e-4))  # [rad/m] 1e-7 deg/mm: a joint that must not stop keeps at least so much
+LEAST_RATE = float(np.deg2rad(1e-5))  # [rad/m] 1e-8 deg/mm: a joint that must not stop keeps at least so much
 
 
 def target_spins(psi_bound: float | None, per_turn: int) -> Array:

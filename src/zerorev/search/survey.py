@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from zerorev.kernels import compass, legs
 from zerorev.kernels import fan as fans
-from zerorev.kernels import legs
 from zerorev.model._arrays import Array
 from zerorev.search.problem import SAME_COST, Found, Mask, Problem
 
-__all__ = ["Fan", "survey", "surveyed"]
+__all__ = ["Fan", "settled", "survey", "surveyed"]
 
 COARSE_NODES, NODES, FINE_NODES = 12, 24, 96  # points on a leg: looking over, refining, where those did not see all
 SEEDS, MOST_SEEDS = 2, 6  # pairs that are refined on a branch: good ones, all
@@ -82,18 +82,36 @@ def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Found]:
 
 
 def _refined(problem: Problem, branch: int, seed: Array) -> Found | None:
-    (asked, mode), best = problem.objective(), np.empty(3)
-    found = None
     for nodes in (NODES, FINE_NODES, 4 * FINE_NODES):
-        point = seed.copy()
-        fans.refine(
-            problem.robot.arm, problem.plane, branch, point, problem.step / 2, problem.weights, asked, mode, nodes, best
-        )
-        found = problem.found(branch, point[0], (point[1], point[2]))
+        found, best = _searched(compass.refine, problem, branch, seed, problem.step / 2, nodes)
         # what the nodes did not see: look again, more closely
         if found is not None and problem.cost(found) <= best[0] + SAME_COST:
             break
     return found
+
+
+def settled(problem: Problem, motion: Found) -> Found:
+    """The bottom of the valley in which a motion lies, whatever reverses; the motion itself where that is no better.
+
+    Args:
+        problem: what is asked.
+        motion: the best one so far.
+    """
+    for nodes, step in ((NODES, problem.step / 10), (FINE_NODES, problem.step / 40)):
+        psi, depth = motion.profile.psi, problem.hole.depth
+        point = np.array([psi[1], (psi[0] - psi[1]) / depth, (psi[2] - psi[1]) / depth])
+        found, _ = _searched(compass.settle, problem, motion.branch, point, step, nodes)
+        motion = motion if found is None else min(motion, found, key=problem.rank)
+    return motion
+
+
+def _searched(
+    search: Any, problem: Problem, branch: int, seed: Array, step: float, nodes: int
+) -> tuple[Found | None, Array]:
+    """Where a compass search ends, and cost, lack and value there as the nodes see them."""
+    (asked, mode), best, point = problem.objective(), np.empty(3), seed.copy()
+    search(problem.robot.arm, problem.plane, branch, point, step, problem.weights, asked, mode, nodes, best)
+    return problem.found(branch, point[0], (point[1], point[2])), best
 
 
 def _fan(spins: int) -> Fan:

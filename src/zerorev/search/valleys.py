@@ -17,6 +17,7 @@ import numpy as np
 from zerorev.kernels import legs, pairs
 from zerorev.kernels.field import ROOM
 from zerorev.model._arrays import Array
+from zerorev.motion import outward_rates
 from zerorev.search.problem import Asked, Found, Mask, Problem
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
@@ -25,11 +26,14 @@ __all__ = ["Valleys"]
 NODES, FINE_NODES = 24, 96  # points on a leg: going down, the last polish
 DESCENT_STEPS = 10  # golden section from two steps of the grid to some 0.02 deg
 POLISH_STEPS, FINE_STEPS = 16, 12  # the same from there to 3e-5 deg, and on fine legs to 6e-6 deg
+# steps of the grid around a pair within which it is polished; the wider ones where nothing closer will do
+CLOSE, CLOSEST = (0.02, 1.0), (0.0007, 0.02, 1.0)
 MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
 CANDIDATES = 8  # valleys gone down, at most
 PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
-LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] that a leg is asked for beyond what was missing between its points
+LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] that a leg is asked for beyond what was missing between its points, ...
+MORE_AND_MORE = 6.0  # ... times this from one time to the next: how far below zero a rate was is not known
 WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
 
 
@@ -239,31 +243,56 @@ class Valleys:
 
     def _polished(self, keep: Mask, asked: Asked, mode: int, pair: _Pair) -> Found | None:
         """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
-        wanted = asked.min_rate
-        around = 0.02 * self.step
+        goal = asked.min_rate
+        # nobody asked for the floor: half of it is enough
+        enough = goal * (1 - 1e-9) if goal > LEAST_RATE else 0.5 * goal
         # few points foretell the travel of a leg to some 0.1 %, and so where a flat valley is lowest only roughly
-        posture = pair.branch // 2
-        pair = self._followed(keep, asked, mode, posture, pair.psi_t, around, FINE_NODES, POLISH_STEPS) or pair
-        around /= 30
-        found, shy = None, LIMIT_SLACK
+        pair = self._nearby(keep, asked, mode, pair, POLISH_STEPS, CLOSE) or pair
+        found, shy, more = None, LIMIT_SLACK, LEAST_MORE
         for _ in range(6):
-            low, high = pair.psi_t - around, pair.psi_t + around
-            fine = self._bottom(keep, asked, mode, pair.branch // 2, low, high, FINE_NODES, FINE_STEPS)
-            found = self._motion(pair if fine is None else fine)
-            if found is not None:
-                score = found.score
-                turned = np.array(score.reversals_per_joint)[keep].sum()
-                rates = score.min_rate[keep] if not asked.mean_rule else score.mean_rate[keep]
-                short = wanted - rates.min(initial=np.inf)
-                if not turned and short <= 1e-9 * wanted:
-                    return found
-            else:
+            pair = self._nearby(keep, asked, mode, pair, FINE_STEPS, CLOSEST) or pair
+            found = self._motion(pair)
+            if found is None:
                 # over a limit by what the nodes do not see
-                short, shy = 0.0, 4.0 * shy
+                shy *= 4.0
                 asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
-            # the sampled legs did not see the lowest point: ask for what was missing, and look again
-            asked = asked._replace(min_rate=asked.min_rate + max(1.5 * short, LEAST_MORE))
+                continue
+            least = self._least_rate(found, keep, mean_rule=asked.mean_rule)
+            if least >= enough:
+                return found
+            # the lowest point lies between the nodes: ask for what was missing, and look again
+            asked = asked._replace(min_rate=asked.min_rate + max(goal - least, 0.0) + more)
+            more *= MORE_AND_MORE
         return found
+
+    def _nearby(
+        self, keep: Mask, asked: Asked, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
+    ) -> _Pair | None:
+        """The best pair around another, on fine legs, as close to it as some will do; `close` in steps of the grid."""
+        for around in np.array(close) * self.step:
+            near = self._followed(keep, asked, mode, pair.branch // 2, pair.psi_t, around, FINE_NODES, steps)
+            if near is not None:
+                return near
+        return None
+
+    def _least_rate(self, found: Found, keep: Mask, *, mean_rule: bool) -> float:
+        """The least rate of the joints to be kept [rad/m]; a joint that turns round and back counts as backwards."""
+        score, problem = found.score, self.problem
+        least = float((score.mean_rate if mean_rule else score.min_rate)[keep].min(initial=np.inf))
+        for joint in np.flatnonzero(keep & (np.array(score.reversals_per_joint) > 0)):
+            turns = [event for event in score.events if event.joint == joint + 1]
+            least = min(least, 0.0)
+            if len(turns) == 2 and turns[0].leg == turns[1].leg != "target":
+                # about the middle of the way back it is fastest
+                middle = 0.5 * (turns[0].standoff + turns[1].standoff)
+                leg = 0 if turns[0].leg == "plunge" else 1
+                profile = found.profile
+                psi, rate = profile.psi[1] + middle * profile.twist_rate[leg], profile.twist_rate[leg]
+                rates = outward_rates(
+                    problem.robot, problem.tool, problem.hole, found.branch, np.array([middle]), np.array([psi]), rate
+                )
+                least = min(least, -abs(float(rates[0, joint])))
+        return least
 
     def _motion(self, pair: _Pair) -> Found | None:
         return self.problem.found(pair.branch, pair.psi_t, (pair.above, pair.below))
