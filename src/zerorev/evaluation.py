@@ -131,17 +131,24 @@ def _turning_points(
     """
     along = np.where(np.arange(profile.twist_rate.size) < profile.corner, -1.0, 1.0)
 
+    twist_rate, steps = profile.twist_rate, np.diff([profile.standoff, profile.psi])
+
     def rates(k: npt.NDArray[np.int64], x: Array) -> Array:
         """Rates along the motion at fractions x of segments k."""
-        standoff = profile.standoff[k] + x * (profile.standoff[k + 1] - profile.standoff[k])
-        psi = profile.psi[k] + x * (profile.psi[k + 1] - profile.psi[k])
-        return along[k, None] * outward_rates(robot, tool, hole, branch, standoff, psi, profile.twist_rate[k])
+        standoff, psi = profile.standoff[k] + x * steps[0, k], profile.psi[k] + x * steps[1, k]
+        return along[k, None] * outward_rates(robot, tool, hole, branch, standoff, psi, twist_rate[k])
 
     k = np.repeat(np.arange(along.size), SAMPLES_PER_SEGMENT)
     x = np.tile(np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT), along.size)
-    for _ in range(CLOSER_LOOKS):
-        k, x = _with_closer_looks(k, x, np.abs(rates(k, x)))
     r = rates(k, x)
+    for _ in range(CLOSER_LOOKS):
+        near_k, near_x = _closer_looks(k, x, np.abs(r))
+        if not near_k.size:
+            break
+        k, x, r = np.append(k, near_k), np.append(x, near_x), np.concatenate([r, rates(near_k, near_x)])
+        # the ends of a closer look are known already
+        _, order = np.unique(2.0 * k + x, return_index=True)
+        k, x, r = k[order], x[order], r[order]
     events: list[tuple[float, Event]] = []
     for i in range(6):
         # NaN, a path that touches a singularity, tells no direction either
@@ -162,23 +169,19 @@ def _turning_points(
     return tuple(event for _, event in events), np.fmin(np.inf, np.fmin.reduce(np.abs(r), axis=0))
 
 
-def _with_closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt.NDArray[np.int64], Array]:
-    """Samples x of segments k, shapes (N,), and more of them around those at which a joint is slowest."""
+def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt.NDArray[np.int64], Array]:
+    """More samples x of segments k, around those at which a joint is slowest; speed of samples in order, shape (N, 6)."""
+    joined = (k[1:] == k[:-1])[:, None]
     before, after = np.full((2, *speed.shape), np.inf)
-    joined = np.flatnonzero(k[1:] == k[:-1])
-    before[joined + 1], after[joined] = speed[joined], speed[joined + 1]
+    np.copyto(before[1:], speed[:-1], where=joined)
+    np.copyto(after[:-1], speed[1:], where=joined)
     # neither a joint that stands still nor one of constant speed dips, whatever their last digits do
     rise = np.fmax(before, after) - speed
     dips = (speed <= before) & (speed <= after) & (speed > NIL_RATE) & (rise > 1e-6 * speed)
     found = np.flatnonzero(dips.any(axis=1))
     low, high = np.maximum(found - 1, 0), np.minimum(found + 1, x.size - 1)
     low, high = np.where(k[low] == k[found], low, found), np.where(k[high] == k[found], high, found)
-    looks = np.linspace(x[low], x[high], CLOSER_LOOK)
-    k, x = np.concatenate([k, np.tile(k[found], CLOSER_LOOK)]), np.concatenate([x, looks.ravel()])
-    order = np.lexsort((x, k))
-    k, x = k[order], x[order]
-    new = np.append(True, (np.diff(k) > 0) | (np.diff(x) > 0))
-    return k[new], x[new]
+    return np.tile(k[found], CLOSER_LOOK), np.linspace(x[low], x[high], CLOSER_LOOK).ravel()
 
 
 def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-def]

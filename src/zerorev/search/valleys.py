@@ -25,7 +25,7 @@ __all__ = ["Valleys"]
 
 NODES, FINE_NODES = 24, 96  # points on a leg: going down, the last polish
 DESCENT_STEPS = 10  # golden section from two steps of the grid to some 0.02 deg
-POLISH_STEPS, FINE_STEPS = 16, 12  # the same from there to 3e-5 deg, and on fine legs to 6e-6 deg
+POLISH_STEPS, AGAIN_STEPS = 20, 12  # the same on fine legs, to some 4e-6 deg; and where more is asked of them
 # steps of the grid around a pair within which it is polished; the wider ones where nothing closer will do
 CLOSE, CLOSEST = (0.02, 1.0), (0.0007, 0.02, 1.0)
 MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
@@ -250,19 +250,19 @@ class Valleys:
         pair = self._nearby(keep, asked, mode, pair, POLISH_STEPS, CLOSE) or pair
         found, shy, more = None, LIMIT_SLACK, LEAST_MORE
         for _ in range(6):
-            pair = self._nearby(keep, asked, mode, pair, FINE_STEPS, CLOSEST) or pair
             found = self._motion(pair)
             if found is None:
                 # over a limit by what the nodes do not see
                 shy *= 4.0
                 asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
-                continue
-            least = self._least_rate(found, keep, mean_rule=asked.mean_rule)
-            if least >= enough:
-                return found
-            # the lowest point lies between the nodes: ask for what was missing, and look again
-            asked = asked._replace(min_rate=asked.min_rate + max(goal - least, 0.0) + more)
-            more *= MORE_AND_MORE
+            else:
+                least = self._least_rate(found, keep, mean_rule=asked.mean_rule)
+                if least >= enough:
+                    break
+                # the lowest point lies between the nodes: ask for what was missing, and look again
+                asked = asked._replace(min_rate=asked.min_rate + max(goal - least, 0.0) + more)
+                more *= MORE_AND_MORE
+            pair = self._nearby(keep, asked, mode, pair, AGAIN_STEPS, CLOSEST) or pair
         return found
 
     def _nearby(
