@@ -170,7 +170,7 @@ def _turning_points(
 
 
 def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt.NDArray[np.int64], Array]:
-    """More samples x of segments k, around those at which a joint is slowest; speed of samples in order, shape (N, 6)."""
+    """More samples x of segments k where a joint is slowest; speed of the samples in order, shape (N, 6)."""
     joined = (k[1:] == k[:-1])[:, None]
     before, after = np.full((2, *speed.shape), np.inf)
     np.copyto(before[1:], speed[:-1], where=joined)
