@@ -3,6 +3,7 @@ import { number, set, signed, svg, write } from "./svg.js";
 
 export const NAMES = { start: "start", target: "target", end: "end", inner: "inner point" };
 const TOGETHER = 30; // [px]
+const LABEL = 90; // [px] that the label of an end or of the target takes beside it
 const SHAPES = {
   start: "M7 0A7 7 0 1 1 -7 0A7 7 0 1 1 7 0Z",
   target: "M0 -9.5L9.5 0L0 9.5L-9.5 0Z",
@@ -15,6 +16,7 @@ export class Legs {
     this.plane = plane;
     this.points = []; // {standoff [mm], psi [deg]} in order of motion
     this.motion = null;
+    this.labels = []; // of the handles: {x [px], up: above the leg}
     this.cursor = null;
     this.back = svg(root, "g", { "clip-path": plane.clipped });
     this.baseline = svg(this.back, "path", { class: "zr-tw-baseline" });
@@ -124,6 +126,7 @@ export class Legs {
     if (now.length !== names.length || now.some((each, n) => each.dataset.testid !== `handle-${names[n]}`)) {
       this.handles.replaceChildren(...names.map((name, n) => this.makeHandle(name, kinds[n], n)));
     }
+    this.labels = [];
     this.points.forEach((point, n) => {
       const [x, y] = [this.plane.x(this.distance(n)), this.plane.y(point.psi)];
       const handle = this.handles.children[n];
@@ -134,6 +137,7 @@ export class Legs {
       const text = handle.lastChild;
       const beside = this.points[n + (n > 0 && n === this.points.length - 1 ? -1 : 1)];
       const up = beside.psi <= point.psi;
+      if (kinds[n] !== "inner") this.labels.push({ x, up });
       const edge = n === 0 ? "start" : n === this.points.length - 1 ? "end" : "start";
       set(text, { x: edge === "end" ? -10 : 11, y: up ? -11 : 21, "text-anchor": edge });
       write(text, kinds[n] === "inner" ? `${number(point.psi, 1)}°` : `${kinds[n]} ${signed(point.psi, 1)}°`);
@@ -171,13 +175,15 @@ export class Legs {
       const element = this.marks.children[n];
       const [x, y] = [this.plane.x(mark.x), this.plane.y(this.psiAt(mark.x))];
       set(element, { transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})`, "aria-label": `${mark.name} reverses here`, "data-joint": mark.joint });
-      if (last === null || x - last > TOGETHER) lines.push({ text: element.lastChild, leg: mark.leg, names: new Map() });
+      if (last === null || x - last > TOGETHER) lines.push({ text: element.lastChild, x, leg: mark.leg, names: new Map() });
       else this.name(element.lastChild, new Map());
       last = x;
       lines[lines.length - 1].names.set(mark.name, mark);
     });
-    for (const { text, leg, names } of lines) {
-      set(text, { x: -8, y: leg === "target" ? 21 : -9, "text-anchor": "end" });
+    for (const { text, x, leg, names } of lines) {
+      // out of the way of a handle's own label
+      const beside = this.labels.find((label) => Math.abs(label.x - x) < LABEL && label.up);
+      set(text, { x: -8, y: leg === "target" || beside ? 21 : -9, "text-anchor": "end" });
       this.name(text, names);
     }
   }
