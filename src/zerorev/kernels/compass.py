@@ -61,22 +61,10 @@ def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         nodes: points on a leg.
         best: out, shape (3,): cost, lack and value.
     """
-    legs = np.empty((2, ROWS, 6))
-    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
-    tried = np.empty(3)
-    for _ in range(COMPASS_STEPS):
-        stuck = True
-        for move in range(27):
-            tried[0] = point[0] + (move % 3 - 1) * step
-            tried[1] = point[1] + (move // 3 % 3 - 1) * step / asked.depth
-            tried[2] = point[2] + (move // 9 - 1) * step / asked.depth
-            cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
-            if is_better(cost, lack, value, best):
-                best[0], best[1], best[2] = cost, lack, value
-                point[:] = tried
-                stuck = False
-        if stuck:
-            step *= 0.5
+    moves = np.empty((27, 3))
+    for move in range(27):
+        moves[move, 0], moves[move, 1], moves[move, 2] = move % 3 - 1, move // 3 % 3 - 1, move // 9 - 1
+    _search(arm, plane, branch, point, moves, step, 0.0, COMPASS_STEPS, (weights, asked, mode, nodes), best)
 
 
 @kernel
@@ -99,20 +87,23 @@ def settle(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         nodes: points on a leg.
         best: see `refine`.
     """
-    legs = np.empty((2, ROWS, 6))
-    _settle_slopes(arm, plane, branch, point, step, weights, asked, mode, nodes, legs, best)
+    judged = (weights, asked, mode, nodes)
+    slopes = np.zeros((4, 3))
+    slopes[0, 1], slopes[1, 1], slopes[2, 2], slopes[3, 2] = -1.0, 1.0, -1.0, 1.0
+    _search(arm, plane, branch, point, slopes, step, SLOPES_SETTLED, SETTLE_STEPS, judged, best)
     tried, worth, drift = np.empty(3), np.empty(3), np.zeros(2)
     for _ in range(SETTLE_STEPS):
         if step < SETTLED:
             break
         stuck = True
-        for move in (-1, 1):
-            tried[:] = point
-            tried[0] += move * step
-            tried[1:] += drift * move * step
-            _settle_slopes(arm, plane, branch, tried, SLOPES_LOOSE * step, weights, asked, mode, nodes, legs, worth)
+        for move in (-step, step):
+            tried[0] = point[0] + move
+            tried[1:] = point[1:] + drift * move
+            _search(
+                arm, plane, branch, tried, slopes, SLOPES_LOOSE * step, SLOPES_SETTLED, SETTLE_STEPS, judged, worth
+            )  # fmt: skip
             if is_better(worth[0], worth[1], worth[2], best):
-                drift[:] = (tried[1:] - point[1:]) / (move * step)
+                drift[:] = (tried[1:] - point[1:]) / move
                 best[:], point[:] = worth, tried
                 stuck = False
                 break
@@ -121,17 +112,31 @@ def settle(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
 
 
 @kernel
-def _settle_slopes(arm, plane, branch, point, step, weights, asked, mode, nodes, legs, best):  # type: ignore[no-untyped-def]
-    """Compass search in the slopes of a pair of legs alone; see `settle`."""
+def _search(arm, plane, branch, point, moves, step, least, steps, judged, best):  # type: ignore[no-untyped-def]
+    """Take whichever moves better a pair of legs; halve them once none does; until they are less than the least.
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        point: see `refine`.
+        moves: in steps of psi_t, and of the outer ends of the legs, shape (M, 3).
+        step: to begin with [rad].
+        least: step [rad].
+        steps: times that all moves are tried, at most.
+        judged: by (weights, asked, mode, nodes), see `refine`.
+        best: see `refine`.
+    """
+    weights, asked, mode, nodes = judged
+    legs, tried = np.empty((2, ROWS, 6)), np.empty(3)
     best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
-    tried = np.empty(3)
-    for _ in range(SETTLE_STEPS):
-        if step < SLOPES_SETTLED:
+    for _ in range(steps):
+        if step < least:
             break
         stuck = True
-        for move in range(4):
-            tried[:] = point
-            tried[1 + move // 2] += (2 * (move % 2) - 1) * step / asked.depth
+        for move in moves:
+            tried[0] = point[0] + move[0] * step
+            tried[1:] = point[1:] + move[1:] * step / asked.depth
             cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
             if is_better(cost, lack, value, best):
                 best[0], best[1], best[2] = cost, lack, value
