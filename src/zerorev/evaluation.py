@@ -20,9 +20,9 @@ from zerorev.motion import JointPath, joint_path, outward_rates
 __all__ = ["NIL_RATE", "Evaluation", "evaluate", "event_distance", "meets_threshold", "steady_rates"]
 
 NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
-SAMPLES_PER_SEGMENT = 200
+SAMPLES_PER_LEG, SAMPLES_PER_SEGMENT = 200, 32  # at least
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
-CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a segment is seen
+CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a leg is seen
 
 
 @dataclass(frozen=True)
@@ -138,8 +138,11 @@ def _turning_points(
         standoff, psi = profile.standoff[k] + x * steps[0, k], profile.psi[k] + x * steps[1, k]
         return along[k, None] * outward_rates(robot, tool, hole, branch, standoff, psi, twist_rate[k])
 
-    k = np.repeat(np.arange(along.size), SAMPLES_PER_SEGMENT)
-    x = np.tile(np.linspace(0.0, 1.0, SAMPLES_PER_SEGMENT), along.size)
+    plunge, retract = profile.standoff[[0, -1]] - profile.standoff[profile.corner]
+    share = np.abs(steps[0]) / np.where(along < 0, plunge, retract)
+    samples = np.maximum(np.ceil(SAMPLES_PER_LEG * share).astype(int), SAMPLES_PER_SEGMENT)
+    k = np.repeat(np.arange(along.size), samples)
+    x = (np.arange(k.size) - (np.cumsum(samples) - samples)[k]) / (samples[k] - 1)
     r = rates(k, x)
     for _ in range(CLOSER_LOOKS):
         near_k, near_x = _closer_looks(k, x, np.abs(r))
