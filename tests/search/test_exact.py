@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.cases import drilled, random_place
+from benchmarks.cases import drilled, mirrored, random_place
 from scipy.optimize import minimize
 
 from oracles import search as twin
@@ -382,6 +382,9 @@ class TestBetweenTheNodes:
         found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
         assert found.reversals == 5
         assert travel_deg(found) < 159.87160
+        there = mirrored(case)
+        mirror = search(there.robot, there.tool, there.hole, NO_THRESHOLD)
+        np.testing.assert_allclose(mirror.profile.psi, -found.profile.psi, atol=np.deg2rad(0.01))
 
 
 class TestToolThroughTheWristCentre:

@@ -15,6 +15,7 @@ from zerorev.search.problem import SAME_COST, Found, Mask, Problem
 __all__ = ["Fan", "settled", "survey", "surveyed"]
 
 COARSE_NODES, NODES, FINE_NODES = 12, 24, 96  # points on a leg: looking over, refining, where those did not see all
+MOST_SETTLINGS = 4  # along an edge, on fine legs; a long one takes several
 SEEDS, MOST_SEEDS = 2, 6  # pairs that are refined on a branch: good ones, all
 APART = 4  # steps of the grid within which two pairs go down the same valley
 
@@ -97,11 +98,14 @@ def settled(problem: Problem, motion: Found) -> Found:
         problem: what is asked.
         motion: the best one so far.
     """
-    for nodes, step in ((NODES, problem.step / 10), (FINE_NODES, problem.step / 40)):
+    for nodes, share in ((NODES, 0.1), *[(FINE_NODES, 0.025)] * MOST_SETTLINGS):
         psi, depth = motion.profile.psi, problem.hole.depth
         point = np.array([psi[1], (psi[0] - psi[1]) / depth, (psi[2] - psi[1]) / depth])
-        found, _ = _searched(compass.settle, problem, motion.branch, point, step, nodes)
-        motion = motion if found is None else min(motion, found, key=problem.rank)
+        found, _ = _searched(compass.settle, problem, motion.branch, point, share * problem.step, nodes)
+        if found is not None and problem.rank(found) < problem.rank(motion):
+            motion = found
+        elif nodes == FINE_NODES:
+            break
     return motion
 
 
