@@ -22,6 +22,7 @@ __all__ = ["NIL_RATE", "Evaluation", "evaluate", "event_distance", "meets_thresh
 NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_LEG, SAMPLES_PER_SEGMENT = 200, 32  # at least
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
+ROOT_LOOKS = 9  # each 32 times closer, from a sample's distance to the last bits
 CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a leg is seen
 
 
@@ -188,11 +189,10 @@ def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt
 
 
 def _root(rate, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
+    """Where a rate first has the sign that it has at `high`, of many points at once: a call costs more than a point."""
     sign = np.sign(rate(np.array([high]))[0])
-    for _ in range(50):
-        middle = (low + high) / 2
-        if np.sign(rate(np.array([middle]))[0]) == sign:
-            high = middle
-        else:
-            low = middle
+    for _ in range(ROOT_LOOKS):
+        points = np.linspace(low, high, CLOSER_LOOK)
+        first = max(int(np.argmax(np.sign(rate(points)) == sign)), 1)
+        low, high = float(points[first - 1]), float(points[first])
     return (low + high) / 2
