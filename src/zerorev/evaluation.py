@@ -22,8 +22,8 @@ __all__ = ["NIL_RATE", "Evaluation", "evaluate", "event_distance", "meets_thresh
 NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_LEG, SAMPLES_PER_SEGMENT = 200, 32  # at least
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
-ROOT_LOOKS = 9  # each 32 times closer, from a sample's distance to the last bits
 CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a leg is seen
+ROOT_LOOKS = 9  # each 32 times closer, from a sample's distance to the last bits
 
 
 @dataclass(frozen=True)
@@ -130,9 +130,8 @@ def _turning_points(
     again, closely, so that a joint that turns round and back between two samples is not missed; a change of sign is
     then located by bisection.
     """
-    along = np.where(np.arange(profile.twist_rate.size) < profile.corner, -1.0, 1.0)
-
     twist_rate, steps = profile.twist_rate, np.diff([profile.standoff, profile.psi])
+    along = np.where(np.arange(twist_rate.size) < profile.corner, -1.0, 1.0)
 
     def rates(k: npt.NDArray[np.int64], x: Array) -> Array:
         """Rates along the motion at fractions x of segments k."""

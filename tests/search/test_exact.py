@@ -424,8 +424,8 @@ class TestSymmetry:
         """psi -> -psi, for base_y, this tool, and limits that are the same both ways."""
         position, flip = positions[n], np.array([1.0, -1.0, 1.0])
         hole = position.hole
-        mirrored = replace(hole, target=hole.target * flip, direction=hole.direction * flip, psi_zero=hole.psi_zero)
-        there, here = search(robot, tool, mirrored, DEFAULT), found_at(position, DEFAULT)
+        image = replace(hole, target=hole.target * flip, direction=hole.direction * flip, psi_zero=hole.psi_zero)
+        there, here = search(robot, tool, image, DEFAULT), found_at(position, DEFAULT)
         assert travel_deg(there) == pytest.approx(travel_deg(here), abs=1e-3)
         np.testing.assert_allclose(there.profile.psi, -here.profile.psi, atol=1e-3)
 

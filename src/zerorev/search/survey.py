@@ -99,8 +99,7 @@ def settled(problem: Problem, motion: Found) -> Found:
         motion: the best one so far.
     """
     for nodes, share in ((NODES, 0.1), *[(FINE_NODES, 0.025)] * MOST_SETTLINGS):
-        psi, depth = motion.profile.psi, problem.hole.depth
-        point = np.array([psi[1], (psi[0] - psi[1]) / depth, (psi[2] - psi[1]) / depth])
+        point = np.array([motion.profile.psi[1], *motion.profile.twist_rate])
         found, _ = _searched(compass.settle, problem, motion.branch, point, share * problem.step, nodes)
         if found is not None and problem.rank(found) < problem.rank(motion):
             motion = found

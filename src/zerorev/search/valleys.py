@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from zerorev.evaluation import event_distance
 from zerorev.kernels import legs, pairs
 from zerorev.kernels.field import ROOM
 from zerorev.model._arrays import Array
@@ -32,9 +33,9 @@ MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
 CANDIDATES = 8  # valleys gone down, at most
 PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
 WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
+WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
 LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] that a leg is asked for beyond what was missing between its points, ...
 MORE_AND_MORE = 6.0  # ... times this from one time to the next: how far below zero a rate was is not known
-WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
 
 
 class _Pair(NamedTuple):
@@ -284,12 +285,10 @@ class Valleys:
             least = min(least, 0.0)
             if len(turns) == 2 and turns[0].leg == turns[1].leg != "target":
                 # about the middle of the way back it is fastest
-                middle = 0.5 * (turns[0].standoff + turns[1].standoff)
-                leg = 0 if turns[0].leg == "plunge" else 1
-                profile = found.profile
-                psi, rate = profile.psi[1] + middle * profile.twist_rate[leg], profile.twist_rate[leg]
+                middle = np.mean([event_distance(found.profile, event) for event in turns], keepdims=True)
+                slope = found.profile.twist_rate[0 if turns[0].leg == "plunge" else 1]
                 rates = outward_rates(
-                    problem.robot, problem.tool, problem.hole, found.branch, np.array([middle]), np.array([psi]), rate
+                    problem.robot, problem.tool, problem.hole, found.branch, *found.profile.at(middle), slope
                 )
                 least = min(least, -abs(float(rates[0, joint])))
         return least
