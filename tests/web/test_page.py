@@ -10,7 +10,8 @@ import pytest
 
 pytest.importorskip("nicegui")
 
-from nicegui import Client, ui
+from nicegui import Client, core, ui
+from nicegui.awaitable_response import NullResponse
 from nicegui.page import page as page_of
 
 from zerorev.web import page
@@ -27,7 +28,7 @@ def shown(monkeypatch):
     """Run edits with the page of a state on it: ids of its parts after each of them, and what was to be planned."""
     planned = []
     monkeypatch.setattr(page, "plan_selected", lambda work: planned.append(work))
-    monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: None)
+    monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: NullResponse())
     for name in ("twist_map", "cell"):  # their own tests answer for what they do once they are there
         monkeypatch.setattr(page, name, lambda _, name=name: ui.element().props(f"data-testid={name}"))
 
@@ -35,6 +36,7 @@ def shown(monkeypatch):
         session, parts = Session(state), []
 
         async def main():
+            monkeypatch.setattr(core, "loop", asyncio.get_running_loop())
             with Client(page_of("/")) as client:
                 page.build(session, Work(session))
                 for edit in (lambda _: None, *edits):

@@ -22,10 +22,11 @@ from zerorev.model.tool import Tool
 from zerorev.motion import joint_path
 from zerorev.report.arm_shapes import Solid, arm_solids, chain, rings, tool_solids
 from zerorev.report.motion_look import Mark, held, look, signed_distance
+from zerorev.report.palette import BASELINE_COLOUR, CANNOT_RUN, JOINT_COLOURS, REVERSAL_COLOURS
 from zerorev.report.skeleton import home
 from zerorev.report.urdf_meshes import Mesh
 
-__all__ = ["arm_data", "holes_data", "motion_data", "slice_data", "track_data"]
+__all__ = ["arm_data", "holes_data", "motion_data", "reversals_data", "slice_data", "track_data"]
 
 SAMPLES = 120  # of a motion, about
 UNPLANNED, INFEASIBLE = -1, -2  # what a hole's count of reversals is where it has none
@@ -43,8 +44,6 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
         tool: on its flange.
         meshes: of the foot and the six links, to be shown in place of the solids (`report.urdf_meshes`).
     """
-    from zerorev.report.figures import style
-
     links = [[_solid(solid) for solid in link] for link in arm_solids(robot)]
     if meshes is not None:
         links = [[_mesh(mesh) for mesh in link] for link in meshes]
@@ -60,8 +59,7 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
         "home_deg": deg(home(robot)).tolist(),
         "reach_mm": float(mm(robot.arm.c2 + np.hypot(robot.arm.c3, robot.arm.a2))),
         "colours": {
-            "joints": style.JOINT_COLOURS, "reversals": style.REVERSAL_COLOURS, "cannot": style.CANNOT_RUN,
-            "baseline": style.BASELINE_COLOUR,
+            "joints": JOINT_COLOURS, "reversals": REVERSAL_COLOURS, "cannot": CANNOT_RUN, "baseline": BASELINE_COLOUR,
         },
     }  # fmt: skip
 
@@ -82,9 +80,19 @@ def holes_data(holes: Sequence[Hole], T_base_part: Array, answers: Mapping[str, 
         "target_mm": packed(mm(target)),
         "direction": packed(direction),
         "depth_mm": packed(mm(depth)),
-        "reversals": [_known(answers.get(hole.id)) for hole in holes],
+        "reversals": reversals_data(holes, answers),
         "plates": _plates(target, direction, depth, T_base_part),
     }
+
+
+def reversals_data(holes: Sequence[Hole], answers: Mapping[str, HolePlan]) -> list[int]:
+    """What is known of each hole: the reversals of its motion, or why there is no such count (below 0).
+
+    Args:
+        holes: of a job.
+        answers: by the hole's id.
+    """
+    return [_known(answers.get(hole.id)) for hole in holes]
 
 
 def motion_data(
@@ -194,7 +202,6 @@ def _mesh(mesh: Mesh) -> dict[str, Any]:
 
 
 def _known(answer: HolePlan | None) -> int:
-    """Reversals of a hole's motion; below 0: why there is no such count."""
     if answer is None:
         return UNPLANNED
     return INFEASIBLE if answer.score is None else answer.score.reversals

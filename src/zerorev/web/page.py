@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import suppress
 
-from nicegui import ui
+from nicegui import background_tasks, ui
 
 from zerorev.web.computing import Work, plan_selected
 from zerorev.web.session import Session
@@ -37,6 +37,18 @@ UNDO = """event => {
     event.preventDefault();
     emit();
 }"""
+
+View = Callable[[Session], object]
+PICTURES: tuple[tuple[str, str, View], ...] = (
+    ("twist-map", "Twist map", twist_map),
+    ("cell", "Cell", cell),
+    ("bracket", "Bracket", bracket),
+    ("curves", "Joint angles along the path", curves),
+)
+
+# what was sent so far is drawn; a page that is not looked at draws nothing, and is not waited for
+ON_SCREEN = "new Promise(done => { requestAnimationFrame(() => setTimeout(done)); setTimeout(done, 300); })"
+LONGEST = 5.0  # [s] that a browser is waited for
 
 
 def build(session: Session, work: Work) -> None:
@@ -87,16 +99,21 @@ def _workbench(session: Session, work: Work) -> None:
             with ui.element("div").classes("zr-doings"):
                 compute(session, work)
                 downloads(session, work)
-        with _panel("twist-map", "Twist map"):
-            twist_map(session)
-        with _panel("cell", "Cell"):
-            cell(session)
-        with _panel("bracket", "Bracket"):
-            bracket(session)
-        with _panel("curves", "Joint angles along the path"):
-            curves(session)
+        pictures = [(_panel(name, title), view) for name, title, view in PICTURES]
         with ui.element("section").classes("zr-panel zr-holes").props('aria-label="holes, and a map around them"'):
             _tabs(session, work)
+    background_tasks.create(_fill(session, pictures))
+
+
+async def _fill(session: Session, pictures: list[tuple[ui.element, View]]) -> None:
+    """Draw what the browser takes longest over, piece by piece, so that the holes are there and can be used before."""
+    for panel, view in pictures:
+        with suppress(TimeoutError):
+            await panel.client.run_javascript(ON_SCREEN, timeout=LONGEST)
+        if panel.is_deleted:  # left, or another file is opened
+            return
+        with panel:
+            view(session)
 
 
 def _tabs(session: Session, work: Work) -> None:
@@ -111,10 +128,9 @@ def _tabs(session: Session, work: Work) -> None:
             map_panel(session, work)
 
 
-@contextmanager
-def _panel(name: str, title: str) -> Iterator[None]:
+def _panel(name: str, title: str) -> ui.element:
     """A framed part of the page, with its name."""
-    with ui.element("section").classes(f"zr-panel zr-{name}").props(f'aria-labelledby="title-{name}"'):
-        with ui.element("div").classes("zr-title"):
-            ui.html(f'<h2 id="title-{name}">{title}</h2>', sanitize=False)
-        yield
+    panel = ui.element("section").classes(f"zr-panel zr-{name}").props(f'aria-labelledby="title-{name}"')
+    with panel, ui.element("div").classes("zr-title"):
+        ui.html(f'<h2 id="title-{name}">{title}</h2>', sanitize=False)
+    return panel

@@ -21,9 +21,11 @@ from pathlib import Path
 from pkgutil import iter_modules
 from types import FrameType
 
+import nicegui
 import uvicorn
 from fastapi import FastAPI
 from nicegui import Client, app, core, ui
+from nicegui.dependencies import js_components
 
 from zerorev.errors import InputError
 from zerorev.web import page, views
@@ -148,7 +150,7 @@ def _site(pages: Pages) -> FastAPI:
         client = ui.context.client
         for style in ("zerorev.css", "compute.css"):
             ui.add_css(STATIC / style)
-        ui.add_head_html(f"<script>{(STATIC / 'ended.js').read_text(encoding='utf-8')}</script>")
+        ui.add_head_html(f"<script>{(STATIC / 'ended.js').read_text(encoding='utf-8')}</script>{_early()}")
         with ui.element("div").classes("zr-loading").props('role="status" data-testid="loading"') as loading:
             ui.label("Opening …")
         await client.connected()
@@ -179,7 +181,16 @@ def _know_components() -> None:
     """Import whatever has scripts of its own: a page can only load those that were known when it was asked for."""
     for module in iter_modules(views.__path__, f"{views.__name__}."):
         import_module(module.name)
-    _ = ui.aggrid, ui.echart  # are imported where they are first named
+    _ = ui.aggrid  # is imported where it is first named
+
+
+def _early() -> str:
+    """Has the browser read its three megabytes of scripts while the server draws the page, and all of them at once.
+
+    They would come one by one as the page needs them, and a connection that is lost meanwhile would lose some.
+    """
+    scripts = (f'"/_nicegui/{nicegui.__version__}/components/{each.key}"' for each in js_components.values())
+    return f'<script type="module">for (const script of [{", ".join(scripts)}]) import(script);</script>'
 
 
 # --- the server -------------------------------------------------------------------------------------------------------

@@ -46,10 +46,11 @@ export class Cell {
     }
   }
 
-  // data: any of what report/cell_data makes: arm, holes (and which is selected)
-  showScene({ arm, holes, selected }) {
+  // data: any of what report/cell_data makes: arm, holes, or their reversals alone (and which is selected)
+  showScene({ arm, holes, reversals, selected }) {
     if (arm) this._showArm(arm);
     if (holes) this._showHoles(holes);
+    if (reversals) this._showReversals(reversals);
     if (selected !== undefined) this._select(selected);
     if (arm || (holes && !this.fitted)) this.look("iso");
     this.fitted = true;
@@ -224,7 +225,8 @@ export class Cell {
     this.data = data;
     for (const old of [this.arm, this.twin]) if (old) this.scene.remove(old.root), old.dispose();
     if (this.failed) return;
-    [this.arm, this.twin] = [new Arm(data), new Arm(data)];
+    this.arm = new Arm(data);
+    this.twin = new Arm(data, this.arm);
     this.twin.setGhost(this.mode === "ghost");
     this.scene.add(this.arm.root, this.twin.root);
     this._showFloor();
@@ -251,6 +253,13 @@ export class Cell {
     this.holes.root.add(this.part);
     this.holes.select(this.selected);
     this.scene.add(this.holes.root);
+    this._showReversals(data.reversals);
+  }
+
+  _showReversals(reversals) {
+    this.holesData.reversals = reversals;
+    if (this.failed) return;
+    this.holes.know(reversals);
     const next = legend(this.holes);
     this.legend.replaceWith(next);
     this.legend = next;

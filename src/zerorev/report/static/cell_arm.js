@@ -7,9 +7,10 @@ const BEHIND = { polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits
 const UP = new THREE.Vector3(0, 1, 0);
 
 export class Arm {
-  // data: what report/cell_data.arm_data makes
-  constructor(data) {
+  // data: what report/cell_data.arm_data makes; like: another arm of the same data, whose shapes are this one's, too
+  constructor(data, like = null) {
     this.data = data;
+    this.shapes = like?.shapes ?? [...data.links, data.tool_solids].map((solids) => this._shape(solids));
     this.root = new THREE.Group();
     this.paint = new THREE.MeshLambertMaterial({ vertexColors: true });
     this.veil = new THREE.MeshLambertMaterial({
@@ -19,16 +20,16 @@ export class Arm {
     this.meshes = [];
     this.frames = [];
     let parent = this.root;
-    this._addSolids(parent, data.links[0]);
+    this._addShape(parent, this.shapes[0]);
     data.chain.forEach((joint, i) => {
       const frame = new THREE.Group();
       frame.position.set(...joint.place);
       parent.add(frame);
-      this._addSolids(frame, data.links[i + 1]);
+      this._addShape(frame, this.shapes[i + 1]);
       this.frames.push(frame);
       parent = frame;
     });
-    this._addSolids(parent, data.tool_solids);
+    this._addShape(parent, this.shapes.at(-1));
     this.tip = new THREE.Object3D();
     this.tip.position.set(...data.tip);
     parent.add(this.tip);
@@ -69,9 +70,12 @@ export class Arm {
     for (const halo of this.halos) halo.material.dispose();
   }
 
-  _addSolids(frame, solids) {
-    if (!solids.length) return;
-    const geometry = merged(solids.map((solid) => [solidGeometry(solid), this._colour(solid.paint)]));
+  _shape(solids) {
+    return solids.length ? merged(solids.map((solid) => [solidGeometry(solid), this._colour(solid.paint)])) : null;
+  }
+
+  _addShape(frame, geometry) {
+    if (!geometry) return;
     const mesh = new THREE.Mesh(geometry, this.paint);
     const before = new THREE.Mesh(geometry, this.hidden);
     before.renderOrder = 2;
@@ -163,24 +167,32 @@ function extruded(shape, length, bevel) {
 // normals that are smooth round a curve and sharp at an edge
 function creased(geometry, angle = 0.6) {
   const flat = geometry.index ? geometry.toNonIndexed() : geometry;
-  const at = flat.attributes.position, sharp = Math.cos(angle), faces = new Map(), normals = [];
-  const key = (i) => `${Math.round(at.getX(i) * 50)},${Math.round(at.getY(i) * 50)},${Math.round(at.getZ(i) * 50)}`;
+  const at = flat.attributes.position.array, count = at.length / 3, sharp = Math.cos(angle);
+  const normals = new Float32Array(count), units = new Float32Array(count); // of the faces, three numbers each
+  const named = new Map(), places = new Array(count); // of each corner, the faces that meet there
   const [a, b, c] = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3()];
-  for (let i = 0; i < at.count; i += 3) {
-    a.fromBufferAttribute(at, i), b.fromBufferAttribute(at, i + 1), c.fromBufferAttribute(at, i + 2);
-    const normal = c.clone().sub(b).cross(a.clone().sub(b)), unit = normal.clone().normalize();
-    for (let k = i; k < i + 3; k++) {
-      normals.push(unit);
-      const name = key(k);
-      if (!faces.has(name)) faces.set(name, []);
-      faces.get(name).push([normal, unit]);
-    }
+  for (let i = 0; i < count; i++) {
+    const name = `${Math.round(at[3 * i] * 50)},${Math.round(at[3 * i + 1] * 50)},${Math.round(at[3 * i + 2] * 50)}`;
+    let faces = named.get(name);
+    if (!faces) named.set(name, (faces = []));
+    faces.push(i - (i % 3));
+    places[i] = faces;
   }
-  const out = new Float32Array(3 * at.count), sum = new THREE.Vector3();
-  for (let i = 0; i < at.count; i++) {
-    sum.set(0, 0, 0);
-    for (const [normal, unit] of faces.get(key(i))) if (unit.dot(normals[i]) > sharp) sum.add(normal);
-    sum.normalize().toArray(out, 3 * i);
+  for (let i = 0; i < count; i += 3) {
+    a.fromArray(at, 3 * i), b.fromArray(at, 3 * i + 3), c.fromArray(at, 3 * i + 6);
+    const normal = c.sub(b).cross(a.sub(b)); // as long as the face is large
+    normal.toArray(normals, i);
+    normal.normalize().toArray(units, i);
+  }
+  const out = new Float32Array(3 * count);
+  for (let i = 0; i < count; i++) {
+    const own = i - (i % 3);
+    a.set(0, 0, 0);
+    for (const face of places[i]) {
+      const along = units[own] * units[face] + units[own + 1] * units[face + 1] + units[own + 2] * units[face + 2];
+      if (along > sharp) a.add(b.fromArray(normals, face));
+    }
+    a.normalize().toArray(out, 3 * i);
   }
   flat.setAttribute("normal", new THREE.BufferAttribute(out, 3));
   return flat;

@@ -3,6 +3,7 @@ import { THREE } from "nicegui-scene";
 
 export const UNPLANNED = -1, INFEASIBLE = -2;
 const HOLE = 4.5, AXES = ["#c8442f", "#2f8f4e", "#2f62c8"], LETTERS = ["x", "y", "z"];
+const MANY = 200; // holes, of which each is so small that it need not be as round
 
 export function floats(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -13,10 +14,11 @@ export function bytes(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
+// materials are let go and not disposed of: the last of its kind would take its shader with it, which the next compiles anew
 export function free(group) {
   group.traverse((object) => {
     object.geometry?.dispose();
-    for (const material of [object.material].flat()) material?.map?.dispose(), material?.dispose();
+    for (const material of [object.material].flat()) material?.map?.dispose();
   });
   group.clear();
 }
@@ -87,15 +89,16 @@ export class Holes {
   // data: what report/cell_data.holes_data makes
   constructor(data, colours, ink) {
     this.ids = data.ids;
-    this.reversals = data.reversals;
     this.target = floats(data.target_mm);
     this.direction = floats(data.direction);
     this.depth = floats(data.depth_mm);
     this.root = new THREE.Group();
     this.colours = colours;
     this._plates(data.plates, ink);
-    this._bodies();
-    this._crosses();
+    this.bodies = this._bodies();
+    this.crosses = new THREE.Group();
+    this.root.add(...this.bodies, this.crosses);
+    this.know(data.reversals);
     this.ring = new THREE.Mesh(
       new THREE.TorusGeometry(3 * HOLE, 0.45 * HOLE, 12, 40), new THREE.MeshBasicMaterial({ color: ink }));
     this.axis = new THREE.Mesh(
@@ -118,6 +121,18 @@ export class Holes {
     const state = count === UNPLANNED ? "not planned yet" : count === INFEASIBLE ? "infeasible"
       : `${count} reversal${count === 1 ? "" : "s"}`;
     return `${this.ids[i]}: ${state}, ${+this.depth[i].toFixed(2)} mm deep`;
+  }
+
+  // what was found of each: its count, or why there is none
+  know(reversals) {
+    this.reversals = reversals;
+    const colour = new THREE.Color();
+    for (const mesh of this.bodies) {
+      reversals.forEach((count, i) => mesh.setColorAt(i, colour.set(this.colour(count))));
+      mesh.instanceColor.needsUpdate = true;
+    }
+    free(this.crosses);
+    this._crosses();
   }
 
   colour(count) {
@@ -158,28 +173,27 @@ export class Holes {
 
   // each hole a short cylinder and a rim at its mouth; on a face that is not drawn, a small disc around it
   _bodies() {
-    const count = this.ids.length, parts = [
-      [new THREE.CylinderGeometry(HOLE, HOLE, 1, 16, 1, true).translate(0, -0.5, 0), true, { side: THREE.BackSide }],
-      [new THREE.TorusGeometry(1.3 * HOLE, 0.35 * HOLE, 8, 24).rotateX(Math.PI / 2), false, {}],
+    const count = this.ids.length, [wall, rim, round] = count > MANY ? [8, 12, 4] : [16, 24, 8], parts = [
+      [new THREE.CylinderGeometry(HOLE, HOLE, 1, wall, 1, true).translate(0, -0.5, 0), true, { side: THREE.BackSide }],
+      [new THREE.TorusGeometry(1.3 * HOLE, 0.35 * HOLE, round, rim).rotateX(Math.PI / 2), false, {}],
     ];
     if (!this.onPlates) parts.push([
       new THREE.CylinderGeometry(5 * HOLE, 5 * HOLE, 0.6, 28).translate(0, -1, 0), false,
       { transparent: true, opacity: 0.3, depthWrite: false },
     ]);
     const [place, turn, size, way] = [new THREE.Vector3(), new THREE.Quaternion(), new THREE.Vector3(), new THREE.Vector3()];
-    const to = new THREE.Matrix4(), colour = new THREE.Color();
-    for (const [geometry, stretched, look] of parts) {
+    const to = new THREE.Matrix4();
+    return parts.map(([geometry, stretched, look]) => {
       const mesh = new THREE.InstancedMesh(geometry, new THREE.MeshLambertMaterial(look), count);
       for (let i = 0; i < count; i++) {
         this.at(i, this.depth[i], place);
         turn.setFromUnitVectors(new THREE.Vector3(0, -1, 0), this.way(i, way));
         size.set(1, stretched ? this.depth[i] : 1, 1);
         mesh.setMatrixAt(i, to.compose(place, turn, size));
-        mesh.setColorAt(i, colour.set(this.colour(this.reversals[i])));
       }
       mesh.frustumCulled = false;
-      this.root.add(mesh);
-    }
+      return mesh;
+    });
   }
 
   // an infeasible hole has a cross over its mouth
@@ -194,7 +208,7 @@ export class Holes {
       turn.multiply(new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), (side * Math.PI) / 4));
       mesh.setMatrixAt(2 * n + k, to.compose(this.at(i, this.depth[i], place), turn, new THREE.Vector3(1, 1, 1)));
     }));
-    this.root.add(mesh);
+    this.crosses.add(mesh);
   }
 }
 

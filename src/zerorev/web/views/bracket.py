@@ -13,7 +13,7 @@ from zerorev.report.palette import JOINT_COLOURS, signed
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled
-from zerorev.web.views.chart import INK, SURFACE, axis, chart, dashes, pairs, redraw, tip
+from zerorev.web.views.chart import INK, SURFACE, Chart, axis, dashes, pairs, tip
 
 __all__ = ["bracket", "options", "sentence"]
 
@@ -32,7 +32,7 @@ def bracket(session: Session) -> None:
     """
     ui.html(KEYS, sanitize=False).classes("zr-curve-keys").props('aria-hidden="true"')
     words = ui.label().classes("zr-bracket-words").props('role="status" data-testid="bracket-words"')
-    drawn = chart(options(None, ()), "critical twist rates of the six joints against the spin at the target", "bracket")
+    drawn = Chart("critical twist rates of the six joints against the spin at the target", "bracket")
     none = ui.label("No motion to draw yet.").classes("zr-none")
 
     def draw() -> None:
@@ -40,11 +40,11 @@ def bracket(session: Session) -> None:
         none.set_visibility(motion is None)
         if job is None or hole is None or motion is None:
             words.set_text("")
-            redraw(drawn, options(None, ()))
+            drawn.show(options(None, ()))
             return
         rates = bracket_of(job.robot, job.tool, hole, motion.profile, motion.branch, STEP)
         words.set_text(sentence(rates, job.robot.joint_names))
-        redraw(drawn, options(rates, job.robot.joint_names))
+        drawn.show(options(rates, job.robot.joint_names))
 
     soon = throttled(draw)
 

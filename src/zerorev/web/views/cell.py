@@ -14,7 +14,7 @@ from nicegui.events import GenericEventArguments
 
 from zerorev import report
 from zerorev.errors import InputError
-from zerorev.report.cell_data import arm_data, holes_data, track_data
+from zerorev.report.cell_data import arm_data, holes_data, reversals_data, track_data
 from zerorev.report.motion_look import held
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, shown
@@ -25,7 +25,7 @@ __all__ = ["CellView", "cell"]
 PLAYER = Path(report.__file__).parent / "static"
 THREE = Path(nicegui.__file__).parent / "elements" / "scene" / "dist"
 UNANSWERED = 1.0  # [s] after which a browser that said nothing is taken to be ready for more
-HOLES_APART = 0.4  # [s] between two drawings of the holes, of which a running plan changes one after the other
+HOLES_APART = 0.4  # [s] between two drawings of the holes, which a running plan answers one after the other
 MOTIONS_APART = 0.05  # [s]
 
 
@@ -69,7 +69,9 @@ class _Sender:
         self._waits_since: float | None = None
         self._held: tuple[Any, ...] | None = None
         self._slice: dict[str, Any] | None = None
+        self._drawn: object = None  # the holes that the browser has
         self._holes = throttled(self._send_holes, HOLES_APART)
+        self._reversals = throttled(self._send_reversals, HOLES_APART)
         self._motion = throttled(self._send_motion, MOTIONS_APART)
 
     def ready(self) -> None:
@@ -91,8 +93,10 @@ class _Sender:
         if old is None or old.robot is not new.robot or old.tool is not new.tool:
             self.ready()
             return
-        if old.holes is not new.holes or before.answers is not after.answers or old.T_base_part is not new.T_base_part:
+        if old.holes is not new.holes or old.T_base_part is not new.T_base_part:
             self._holes()
+        elif before.answers is not after.answers:
+            self._reversals()
         if before.selected != after.selected:
             self._scene(selected=after.selected)
         same_hole = before.hole is after.hole and old.settings is new.settings
@@ -133,6 +137,12 @@ class _Sender:
         if state.job is not None:
             holes = holes_data(state.job.holes, state.job.T_base_part, state.answers)
             self._scene(holes=holes, selected=state.selected)
+            self._drawn = state.job.holes
+
+    def _send_reversals(self) -> None:
+        state = self._session.state
+        if state.job is not None and state.job.holes is self._drawn:  # others are on their way, with theirs
+            self._scene(reversals=reversals_data(state.job.holes, state.answers))
 
     def _send_motion(self) -> None:
         if self._waits_since is not None and monotonic() - self._waits_since < UNANSWERED:

@@ -2,43 +2,58 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
+import nicegui
 import numpy as np
-from nicegui import ui
+from nicegui.element import Element
 
 from zerorev.model._arrays import Array
 from zerorev.report.palette import DASHES
 
-__all__ = ["INK", "LINE", "MUTED", "SURFACE", "axis", "chart", "dashes", "pairs", "redraw", "tip"]
+__all__ = ["INK", "LINE", "MUTED", "SURFACE", "Chart", "axis", "dashes", "pairs", "tip"]
+
+ECHARTS = Path(nicegui.__file__).parent / "elements" / "echart" / "dist"
 
 # drawn as SVG, so that the colours follow the theme of the page without being drawn anew
 INK, MUTED, LINE, SURFACE = (f"var(--zr-{name})" for name in ("ink", "muted", "line", "surface"))
-MINUS = "value => String(value).replace('-', '\u2212')"
 TEXT = {"color": MUTED, "fontSize": 11, "fontFamily": "inherit"}
 
 
-def chart(options: dict[str, Any], words: str, name: str) -> ui.echart:
-    """A chart that fills its panel.
+class Chart(
+    Element,
+    component=Path(__file__).parents[1] / "static" / "chart.js",
+    esm={"nicegui-echart": str(ECHARTS)},
+):
+    """A chart that fills its panel; empty until it is shown something."""
 
-    Args:
-        options: of ECharts.
-        words: what it shows, for those who cannot see it.
-        name: for tests.
-    """
-    drawn = ui.echart(_still(options), renderer="svg").classes("zr-chart")
-    drawn.props["aria-label"], drawn.props["data-testid"] = words, name
-    drawn.props["role"] = "img"
-    return drawn
+    def __init__(self, words: str, name: str) -> None:
+        """Draw it in the current slot.
 
+        Args:
+            words: what it shows, for those who cannot see it.
+            name: for tests.
+        """
+        super().__init__()
+        self.classes("zr-chart")
+        self.props["aria-label"], self.props["data-testid"], self.props["role"] = words, name, "img"
 
-def redraw(drawn: ui.echart, options: dict[str, Any]) -> None:
-    """Show something else in a chart: of as many series as before."""
-    drawn.props["options"] = _still(options)
+    def show(self, options: dict[str, Any]) -> None:
+        """Show something, or something else: of as many series as before.
 
+        Args:
+            options: of ECharts; axes as `axis` makes them, and what stands beside the pointer as `tip` does.
+        """
+        self.run_method("show", {"animation": False, "textStyle": TEXT, "backgroundColor": "transparent"} | options)
 
-def _still(options: dict[str, Any]) -> dict[str, Any]:
-    return {"animation": False, "textStyle": TEXT, "backgroundColor": "transparent"} | options
+    def show_series(self, series: list[dict[str, Any]]) -> None:
+        """Show some series differently, and the rest of the chart as it is.
+
+        Args:
+            series: each with its id, and with what is new of it.
+        """
+        self.run_method("show", {"series": series})
 
 
 def axis(name: str = "", gap: int = 0, **options: Any) -> dict[str, Any]:
@@ -56,7 +71,7 @@ def axis(name: str = "", gap: int = 0, **options: Any) -> dict[str, Any]:
         "type": "value",
         "axisLine": {"show": True, "onZero": False, "lineStyle": {"color": MUTED, "width": 1}},
         "axisTick": {"show": True, "length": 3, "lineStyle": {"color": MUTED}},
-        "axisLabel": {**TEXT, ":formatter": MINUS, "hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
+        "axisLabel": {**TEXT, "hideOverlap": True, "showMinLabel": False, "showMaxLabel": False},
         "splitLine": {"lineStyle": {"color": LINE, "width": 1}},
         "nameTextStyle": TEXT,
         **options,
@@ -72,19 +87,6 @@ def tip(across: str, up: str, digits: tuple[int, int], within: tuple[float, floa
         digits: of the place and of the values.
         within: values that lie outside are drawn at no height of their own, and are said to be beyond.
     """
-    low, high = ("-Infinity", "Infinity") if within is None else within
-    words = f"""points => {{
-        const plain = text => String(text).replace(/[&<>"']/g, letter => '&#' + letter.charCodeAt(0) + ';');
-        const minus = text => text.replace('-', '\u2212');
-        const said = value => value > {high} ? 'beyond {high}' : value < {low} ? minus('beyond {low}')
-            : minus(value.toFixed({digits[1]}));
-        const named = points.filter(p => p.seriesType === 'line' && p.value?.[1] != null && !/\0/.test(p.seriesName));
-        if (!named.length) return '';
-        const rows = named.map(p => `<tr><td><span class="zr-tip-key" style="background:${{p.color}}"></span>
-            ${{plain(p.seriesName)}}</td><td>${{said(p.value[1])}}</td></tr>`).join('');
-        return `<table class="zr-tip"><caption>at ${{minus(named[0].value[0].toFixed({digits[0]}))}} {across},
-            in {up}</caption>${{rows}}</table>`;
-    }}"""
     return {
         "trigger": "axis",
         "confine": True,
@@ -96,7 +98,7 @@ def tip(across: str, up: str, digits: tuple[int, int], within: tuple[float, floa
         "extraCssText": "box-shadow: none; border-radius: 6px",
         "axisPointer": {"type": "line", "animation": False, "lineStyle": {"color": MUTED, "type": "solid", "width": 1},
                         "label": {"show": False}},
-        ":formatter": words,
+        "said": {"across": across, "up": up, "digits": digits, "within": within},
     }  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from zerorev.report.palette import JOINT_COLOURS
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled
-from zerorev.web.views.chart import INK, MUTED, axis, chart, pairs, redraw, tip
+from zerorev.web.views.chart import INK, MUTED, Chart, axis, pairs, tip
 
 __all__ = ["curves", "options"]
 
@@ -37,17 +37,16 @@ def curves(session: Session) -> None:
     """
     keys = "".join(f'<span class="{key}"></span>{words} ' for key, words in KEYS)
     ui.html(keys, sanitize=False).classes("zr-curve-keys").props('aria-hidden="true"')
-    drawn = chart(_options(session.state), "six joint angles along the path, as shown and with constant spin", "curves")
+    drawn = Chart("six joint angles along the path, as shown and with constant spin", "curves")
     none = ui.label("No motion to draw yet.").classes("zr-none")
 
     def draw() -> None:
         none.set_visibility(shown(session.state) is None)
-        redraw(drawn, _options(session.state))
+        drawn.show(_options(session.state))
 
     def cursor(distance_mm: float | None) -> None:
         at = [] if distance_mm is None else [{"xAxis": round(distance_mm, 2)}]
-        lines = [{"id": f"cursor{i}", "markLine": {"data": at}} for i in range(6)]
-        drawn.run_chart_method("setOption", {"series": lines})
+        drawn.show_series([{"id": f"cursor{i}", "markLine": {"data": at}} for i in range(6)])
 
     soon = throttled(draw)
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager
-from typing import Any
+from typing import Any, ParamSpec
 
 from nicegui import ui
 
 from zerorev.errors import InputError
 from zerorev.model.text import FieldPath
+from zerorev.web.session import Session
 
-__all__ = ["Fields", "ends", "form", "group", "number", "said"]
+__all__ = ["Fields", "built_when_opened", "ends", "form", "group", "number", "said"]
+
+P = ParamSpec("P")
 
 
 class Fields(dict[FieldPath, Any]):
@@ -86,6 +89,24 @@ def number(text: Any) -> Any:
         return float(words.replace(",", ".")) if "_" not in words else words
     except ValueError:
         return words
+
+
+def built_when_opened(dialog: Callable[[Session], Callable[P, None]], session: Session) -> Callable[P, None]:
+    """What opens a dialog; the page stands sooner without all of those that nobody asks for.
+
+    Args:
+        dialog: draws it in the current slot, and returns what opens it.
+        session: that it is of.
+    """
+    slot, built = ui.context.slot, list[Callable[P, None]]()
+
+    def opened(*args: P.args, **options: P.kwargs) -> None:
+        if not built:
+            with slot:
+                built.append(dialog(session))
+        built[0](*args, **options)
+
+    return opened
 
 
 def form(title: str, name: str, wide: bool = False) -> tuple[ui.dialog, AbstractContextManager[Any], ui.label]:

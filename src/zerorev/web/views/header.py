@@ -8,6 +8,7 @@ from zerorev.kinematics import wrist_offset
 from zerorev.model.job import Job
 from zerorev.web.session import Session
 from zerorev.web.state import State
+from zerorev.web.views.fields import built_when_opened
 from zerorev.web.views.opener import open_button
 from zerorev.web.views.settings_form import settings_dialog
 
@@ -36,7 +37,7 @@ def _of_a_job(session: Session) -> None:
     with ui.element("div").classes("zr-job"):
         name, machine = ui.label().classes("zr-job-name"), ui.label().classes("zr-job-machine")
     ui.element("span").classes("zr-spring")
-    settings = settings_dialog(session)
+    settings = built_when_opened(settings_dialog, session)
     back = ui.button("Undo", icon="undo", on_click=session.undo, color=None).classes("zr-quiet").props("flat no-caps")
     back.props('aria-label="take the last edit back (Ctrl-Z)" data-testid="undo"').tooltip("take back (Ctrl-Z)")
     change = ui.button("Settings", icon="tune", on_click=settings, color=None).classes("zr-quiet").props("flat no-caps")

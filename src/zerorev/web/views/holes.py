@@ -17,6 +17,7 @@ from zerorev.report.tables import hole_findings
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, without_hole
 from zerorev.web.throttle import throttled
+from zerorev.web.views.fields import built_when_opened
 from zerorev.web.views.hole_form import hole_dialog
 from zerorev.web.views.paste_form import paste_dialog
 
@@ -64,6 +65,14 @@ def holes(session: Session) -> None:
     _findings(session)
 
 
+class _Grid(ui.aggrid):
+    """A grid whose options stay as they are; its rows come by `run_grid_method`, as Vue would watch each of them."""
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._update_method = None  # it would be called as soon as the grid is there, and build it once more
+
+
 class _Table:
     """The grid; of a change it is sent the rows that are others than before, and no more."""
 
@@ -75,12 +84,13 @@ class _Table:
         self.told: Callable[[str], object] = lambda text: None
 
     def draw(self) -> None:
-        self._grid = ui.aggrid(_options([row._asdict() for row in self._rows.values()]), auto_size_columns=False)
+        self._grid = _Grid(_options(), auto_size_columns=False)
         self._grid.classes("zr-grid").props('data-testid="holes"')
         self._grid.options[":onSelectionChanged"] = PICKED % self._grid.id
         self._grid.on("picked", self._picked)
         self._grid.on("firstDataRendered", self._show_selected, [])
         self._refilter = throttled(self._filter, 0.3)
+        self._send_rows()
         self._tell()
         self._session.watch(self._changed)
 
@@ -118,11 +128,14 @@ class _Table:
         if before.selected != after.selected:
             self._show_selected()
 
+    def _send_rows(self) -> None:
+        self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in self._rows.values()])
+
     def _update(self, rows: dict[str, HoleRow]) -> None:
         old, self._rows = self._rows, rows
         added = [key for key in rows if key not in old]
         if [*(key for key in old if key in rows), *added] != list(rows):  # in another order, as after an undo
-            self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in rows.values()])
+            self._send_rows()
             self._refilter()
             return
         change: dict[str, Any] = {
@@ -154,7 +167,7 @@ def _by_id(state: State) -> dict[str, tuple[int, int]]:
     return {hole.id: (id(hole), id(state.answers.get(hole.id))) for hole in state.job.holes}
 
 
-def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
+def _options() -> dict[str, Any]:
     number = {"type": "rightAligned", "width": 80}
     one = DIGITS.format(digits=1)
     return {
@@ -173,7 +186,6 @@ def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
             {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": 124, "sortable": False},
             {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": 84, "sortable": False},
         ],
-        "rowData": rows,
         ":getRowId": "p => p.data.id",
         "rowSelection": {"mode": "singleRow", "checkboxes": False, "enableClickSelection": True},
         ":navigateToNextCell": STEP,
@@ -192,8 +204,7 @@ def _options(rows: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _tools(session: Session, table: _Table) -> None:
     """Filter, and what can be done to the holes."""
-    edit = hole_dialog(session)
-    paste = paste_dialog(session)
+    edit, paste = (built_when_opened(dialog, session) for dialog in (hole_dialog, paste_dialog))
     with ui.element("div").classes("zr-tools"):
         find = ui.input(placeholder="filter: id, or reversals>0").without_auto_validation()
         find.props('dense outlined clearable debounce=200 aria-label="filter the holes" data-testid="filter"')
