@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import base64
 import json
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -118,6 +120,14 @@ def test_all_of_it_is_plain_json(robot, tool, published):
     assert json.loads(json.dumps(data, allow_nan=False))["ids"] == [hole.id for hole in holes]
     assert data["reversals"] == [0, 0, 0, -2]
     assert holes_data(holes, np.eye(4), {})["reversals"] == [-1] * 4
+
+
+def test_the_arm_is_had_without_the_library_that_draws_figures():
+    code = (
+        "import sys; from zerorev.report.cell_data import arm_data; from zerorev.web.opening import demo;"
+        "job = demo().job; arm_data(job.robot, job.tool); sys.exit('matplotlib' in sys.modules)"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_plates_hold_the_holes_that_begin_on_them():

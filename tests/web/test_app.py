@@ -31,6 +31,12 @@ MOVES = """async ([x, y, reach, moves]) => {
 }"""
 DRAWN = """window.drawn = []; window.addEventListener("zerorev-drawn", (event) => window.drawn.push(event.detail))"""
 
+# how often the map has got a size: once as soon as it is watched
+SIZED = """() => {
+    window.sized = 0;
+    new ResizeObserver(() => window.sized++).observe(document.querySelector(".zr-tw-plot"));
+}"""
+
 
 @pytest.fixture(scope="module")
 def job():
@@ -46,8 +52,9 @@ def planned(job):
 
 @pytest.fixture
 def ready(demo_page):
-    """The page of the demo, its first hole planned."""
+    """The page of the demo, its first hole planned, and drawn to its last piece."""
     expect(demo_page.get_by_test_id("reversals")).to_have_text("0", timeout=120_000)
+    expect(demo_page.get_by_test_id("curves")).to_contain_text("→ 0")
     return demo_page
 
 
@@ -158,6 +165,7 @@ def test_from_a_drag_that_reverses_joint_4_to_the_program_of_the_command_line(re
 
 def test_dragging_is_answered_to_the_last_move(ready, job, planned, say):
     ready.evaluate(DRAWN)
+    ready.evaluate(SIZED)
     x, y = grip(ready, "target")
     scale = pixels_per_degree(ready)
     ready.mouse.move(x, y)
@@ -173,6 +181,7 @@ def test_dragging_is_answered_to_the_last_move(ready, job, planned, say):
     expect(ready.get_by_test_id("travel")).to_have_text(f"{np.rad2deg(wanted.travel):.1f}")
     times = sorted(each["ms"] for each in ready.evaluate("window.drawn"))
     assert times
+    assert ready.evaluate("window.sized") == 1, "words that come and go have moved the map"
     half, most = np.percentile(times, (50, 95))
     say(f"pointer to drawn count, position 1: {half:.0f} ms half of them, {most:.0f} ms 95 % of {len(times)}")
 

@@ -31,6 +31,19 @@ def test_the_holes_and_the_motion_of_the_first_are_shown(page):
     assert "0 reversals: 1 hole" in page.get_by_test_id("cell-legend").inner_text()
 
 
+def test_an_answer_recolours_the_hole_and_builds_none_anew(page):
+    page.evaluate(f"window.holes = {CELL}.holes")
+    page.get_by_test_id("hole-next").click()
+    until(page, f"{CELL}.holes.reversals[1] === 0")
+    assert page.evaluate(f"{CELL}.holes === window.holes")
+    colour = f"[...{CELL}.holes.bodies[0].instanceColor.array]"
+    assert page.evaluate(f"{colour}.slice(0, 3).join() === {colour}.slice(3, 6).join()")
+    assert page.evaluate(f"{colour}.slice(3, 6).join() !== {colour}.slice(6, 9).join()")
+    assert "0 reversals: 2 holes" in page.get_by_test_id("cell-legend").inner_text()
+    page.get_by_test_id("hole-before").click()
+    until(page, f"{CELL}.holes.selected === 0")
+
+
 def test_a_picked_hole_is_selected_everywhere(page):
     name = page.evaluate(f"{CELL}.holes.ids[1]")
     page.evaluate(f"{CELL}.on.pickHole({CELL}.holes.ids[1])")

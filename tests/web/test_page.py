@@ -23,14 +23,27 @@ from zerorev.web.state import State, opened_job, selected, without_hole
 CSS = (Path(page.__file__).parent / "static" / "zerorev.css").read_text(encoding="utf-8")
 
 
+class Slow:
+    """What a browser says that has too much to do; most do not wait for it."""
+
+    def __init__(self, *_, **__):
+        pass
+
+    def __await__(self):
+        yield from asyncio.sleep(0.03).__await__()
+        raise TimeoutError
+
+
 @pytest.fixture
 def shown(monkeypatch):
     """Run edits with the page of a state on it: ids of its parts after each of them, and what was to be planned."""
     planned = []
     monkeypatch.setattr(page, "plan_selected", lambda work: planned.append(work))
     monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: NullResponse())
-    for name in ("twist_map", "cell"):  # their own tests answer for what they do once they are there
-        monkeypatch.setattr(page, name, lambda _, name=name: ui.element().props(f"data-testid={name}"))
+    stand_in = lambda name: lambda _: ui.element().props(f"data-testid={name}")  # noqa: E731
+    own = ("twist-map", "cell")  # their own tests answer for what they do once they are there
+    pictures = [(name, title, stand_in(name) if name in own else view) for name, title, view in page.PICTURES]
+    monkeypatch.setattr(page, "PICTURES", pictures)
 
     def run(state, *edits):
         session, parts = Session(state), []
@@ -72,6 +85,30 @@ def test_a_job_has_all_of_its_parts_and_its_first_hole_is_planned(shown):
     } <= parts
     assert "demo" not in parts
     assert planned == 1
+
+
+def test_the_holes_are_there_before_the_pictures_and_no_form_before_it_is_opened(shown, monkeypatch):
+    seen = {}
+
+    def holes(session):
+        seen["at once"] = {each.props.get("data-testid") for each in ui.context.client.elements.values()}
+
+    monkeypatch.setattr(Client, "run_javascript", Slow)
+    _, (*_, last), _ = shown(demo(), holes, *[lambda _: None] * 10)
+    assert "holes" in seen["at once"]
+    assert not {"twist-map", "cell", "bracket", "curves"} & seen["at once"]
+    assert {"twist-map", "cell", "bracket", "curves"} <= last
+    assert not {"settings-form", "hole-form", "paste-form"} & last
+
+
+def test_a_page_that_is_drawn_anew_before_it_is_complete_has_each_picture_once(shown, monkeypatch):
+    def count(session):
+        names = [each.props.get("data-testid") for each in ui.context.client.elements.values()]
+        assert [names.count(name) for name in ("twist-map", "cell", "bracket", "curves")] == [1] * 4
+
+    monkeypatch.setattr(Client, "run_javascript", Slow)
+    reopen = lambda session: session.change(opened_job(demo().job))  # noqa: E731
+    shown(demo(), reopen, *[lambda _: None] * 10, count)
 
 
 def test_a_hole_without_an_answer_is_planned_when_it_is_looked_at(shown):

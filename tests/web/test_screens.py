@@ -21,6 +21,7 @@ def test_screens(demo, open_page, size, scheme):
     page = open_page(demo, viewport={"width": width, "height": height}, color_scheme=scheme, device_scale_factor=scale)
     expect(page.get_by_test_id("reversals")).to_have_text("0", timeout=120_000)
     expect(page.get_by_test_id("map-cover")).to_be_hidden(timeout=120_000)
+    expect(page.get_by_test_id("curves")).to_contain_text("→ 0")
     page.wait_for_timeout(1500)
     SCREENS.mkdir(parents=True, exist_ok=True)
     name = f"{size} {scheme}".replace(" %", "").replace(" ", "_")

@@ -202,8 +202,9 @@ export class Cell {
     this.scene.add(...this.ribbons);
     const size = new ResizeObserver(() => this._resize());
     size.observe(this.stage);
-    const dress = new MutationObserver(() => this.theme());
-    dress.observe(document.body, { attributes: true, attributeFilter: ["class", "data-theme"] });
+    const other = ({ attributeName, oldValue }) => oldValue !== document.body.getAttribute(attributeName);
+    const dress = new MutationObserver((changes) => changes.some(other) && this.theme());
+    dress.observe(document.body, { attributeFilter: ["class", "data-theme"], attributeOldValue: true });
     const night = matchMedia("(prefers-color-scheme: dark)"), redress = () => this.theme();
     night.addEventListener("change", redress);
     this.watchers = [() => size.disconnect(), () => dress.disconnect(), () => night.removeEventListener("change", redress)];
