@@ -37,6 +37,13 @@ SIZED = """() => {
     new ResizeObserver(() => window.sized++).observe(document.querySelector(".zr-tw-plot"));
 }"""
 
+# whether as many reversals are marked of each joint
+MARKED = """wanted => {
+    const marked = wanted.map(() => 0);
+    for (const mark of document.querySelectorAll('[data-testid="reversal-mark"]')) marked[mark.dataset.joint - 1]++;
+    return String(marked) === String(wanted);
+}"""
+
 
 @pytest.fixture(scope="module")
 def job():
@@ -140,8 +147,7 @@ def test_from_a_drag_that_reverses_joint_4_to_the_program_of_the_command_line(re
     assert wanted.reversals_per_joint[3] >= 1
     expect(ready.get_by_test_id("reversals")).to_have_text(str(wanted.reversals))
     expect(ready.get_by_test_id("reversal-mark")).to_have_count(wanted.reversals)
-    joints = ready.get_by_test_id("reversal-mark").evaluate_all("marks => marks.map(mark => +mark.dataset.joint)")
-    assert [joints.count(joint) for joint in range(1, 7)] == list(wanted.reversals_per_joint)
+    ready.wait_for_function(MARKED, arg=list(wanted.reversals_per_joint))  # not those of a move before the last
     expect(ready.get_by_test_id("summary-reversals")).to_contain_text(str(wanted.reversals))
 
     ready.get_by_test_id("plan").click()
@@ -233,6 +239,18 @@ def test_two_pages_share_nothing_and_a_reload_loses_nothing(ready, open_page, de
     expect(ready.get_by_test_id("keep-this-motion")).to_be_visible()
     assert spins(other) == before
     expect(other.get_by_test_id("keep-this-motion")).to_be_hidden()
+
+
+def test_dark_is_kept_by_a_reload(ready):
+    body = ready.locator("body")
+    for looks in ("light", "dark"):
+        ready.get_by_test_id("theme").click()
+        expect(body).to_have_class(re.compile(f"body--{looks}"))
+    nudge(ready)
+    expect(body).to_have_class(re.compile("body--dark"))
+    ready.reload()
+    expect(ready.get_by_test_id("theme")).to_be_visible()
+    expect(body).to_have_class(re.compile("body--dark"))
 
 
 def test_a_lost_connection_loses_nothing(ready, job, planned):

@@ -8,6 +8,7 @@ import { Track, ribbon } from "zerorev-cell/cell_trace.js";
 
 const VIEWS = { iso: [1, -1.35, 0.75], front: [1, 0, 0.12], side: [0, -1, 0.12], top: [0, -0.001, 1] };
 const SEEKS = 66; // [ms] between two that are told
+const SELDOM = 2000; // [ms] between two drawings of answers that come one after the other, where drawing is slow
 const REST = 300; // [ms] that a motion in hand has to rest before it is drawn where drawing is slow
 
 export class Cell {
@@ -54,7 +55,8 @@ export class Cell {
     if (selected !== undefined) this._select(selected);
     if (arm || (holes && !this.fitted)) this.look("iso");
     this.fitted = true;
-    this.invalidate();
+    if (this.slow && reversals && !holes) this.seldom ??= setTimeout(() => ((this.seldom = null), this.invalidate()), SELDOM);
+    else this.invalidate();
   }
 
   // data: {planned, held} as report/cell_data.motion_data makes them, either of them left out where it is as before
@@ -167,6 +169,7 @@ export class Cell {
   dispose() {
     cancelAnimationFrame(this.waiting);
     clearTimeout(this.resting);
+    clearTimeout(this.seldom);
     this.watchers?.forEach((stop) => stop());
     if (this.failed) return;
     this.controls.dispose();
@@ -202,9 +205,8 @@ export class Cell {
     this.scene.add(...this.ribbons);
     const size = new ResizeObserver(() => this._resize());
     size.observe(this.stage);
-    const other = ({ attributeName, oldValue }) => oldValue !== document.body.getAttribute(attributeName);
-    const dress = new MutationObserver((changes) => changes.some(other) && this.theme());
-    dress.observe(document.body, { attributeFilter: ["class", "data-theme"], attributeOldValue: true });
+    const dress = new MutationObserver(() => this.theme());
+    dress.observe(document.body, { attributes: true, attributeFilter: ["class", "data-theme"] });
     const night = matchMedia("(prefers-color-scheme: dark)"), redress = () => this.theme();
     night.addEventListener("change", redress);
     this.watchers = [() => size.disconnect(), () => dress.disconnect(), () => night.removeEventListener("change", redress)];

@@ -83,8 +83,8 @@ export default {
     this.$refs.plot.addEventListener("wheel", this.wheel, { passive: false });
     this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(this.$refs.plot);
-    this.themes = new MutationObserver(([first]) => first.oldValue !== document.body.className && this.plane.draw());
-    this.themes.observe(document.body, { attributeFilter: ["class"], attributeOldValue: true });
+    this.themes = new MutationObserver(() => this.plane.draw());
+    this.themes.observe(document.body, { attributes: true, attributeFilter: ["class"] });
     this.resize();
     this.$emit("ready");
   },

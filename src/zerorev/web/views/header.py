@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from nicegui import ui
 
 from zerorev.kinematics import wrist_offset
@@ -61,16 +63,19 @@ def _of_a_job(session: Session) -> None:
 
 def _theme_button(session: Session) -> None:
     """Goes round: as the system, light, dark."""
-    dark = ui.dark_mode(session.theme)
     button = ui.button(color=None).classes("zr-quiet").props('flat round dense data-testid="theme"')
+
+    page = ui.context.client
 
     def draw() -> None:
         _, icon, words = next(theme for theme in THEMES if theme[0] is session.theme)
+        # `ui.dark_mode` would say so again, and have the whole page styled anew, whenever any part of it changes
+        page.run_javascript(f"setDark({json.dumps(session.theme)})")
         button.props(f'icon={icon} aria-label="theme: {words}; press for another" title="theme: {words}"')
 
     def turn() -> None:
         at = [theme[0] for theme in THEMES].index(session.theme)
-        session.theme = dark.value = THEMES[(at + 1) % len(THEMES)][0]
+        session.theme = THEMES[(at + 1) % len(THEMES)][0]
         draw()
 
     button.on_click(turn)
