@@ -4,7 +4,7 @@ import { echarts } from "nicegui-echart";
 
 const minus = (text) => String(text).replace("-", "\u2212");
 
-// what stands beside the pointer; report: how it is said, as views/chart.py has it
+// what stands beside the pointer, said as views/chart.py: tip has it
 function tip({ across, up, digits, within }) {
   const [low, high] = within ?? [-Infinity, Infinity];
   const said = (value) =>
