@@ -34,16 +34,20 @@ class Slow:
         raise TimeoutError
 
 
+def picture(monkeypatch, name, view):
+    """Have a view take the place of one of the page's pictures."""
+    pictures = [(each, title, view if each == name else old) for each, title, old in page.PICTURES]
+    monkeypatch.setattr(page, "PICTURES", pictures)
+
+
 @pytest.fixture
 def shown(monkeypatch):
     """Run edits with the page of a state on it: ids of its parts after each of them, and what was to be planned."""
     planned = []
     monkeypatch.setattr(page, "plan_selected", lambda work: planned.append(work))
     monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: NullResponse())
-    stand_in = lambda name: lambda _: ui.element().props(f"data-testid={name}")  # noqa: E731
-    own = ("twist-map", "cell")  # their own tests answer for what they do once they are there
-    pictures = [(name, title, stand_in(name) if name in own else view) for name, title, view in page.PICTURES]
-    monkeypatch.setattr(page, "PICTURES", pictures)
+    for name in ("twist-map", "cell"):  # their own tests answer for what they do once they are there
+        picture(monkeypatch, name, lambda _, name=name: ui.element().props(f"data-testid={name}"))
 
     def run(state, *edits):
         session, parts = Session(state), []
@@ -106,9 +110,25 @@ def test_a_page_that_is_drawn_anew_before_it_is_complete_has_each_picture_once(s
         names = [each.props.get("data-testid") for each in ui.context.client.elements.values()]
         assert [names.count(name) for name in ("twist-map", "cell", "bracket", "curves")] == [1] * 4
 
+    def reopen(session):
+        session.change(opened_job(demo().job))
+
     monkeypatch.setattr(Client, "run_javascript", Slow)
-    reopen = lambda session: session.change(opened_job(demo().job))  # noqa: E731
     shown(demo(), reopen, *[lambda _: None] * 10, count)
+
+
+def test_a_picture_with_a_fault_says_so_and_the_others_are_drawn(shown, monkeypatch, caplog):
+    def faulty(session):
+        raise RuntimeError("on purpose")
+
+    def said(session):
+        texts = [getattr(each, "text", "") for each in ui.context.client.elements.values()]
+        assert texts.count("This could not be drawn: a fault in zerorev itself. The terminal says more.") == 1
+
+    picture(monkeypatch, "cell", faulty)
+    _, (parts, _), _ = shown(demo(), said)
+    assert {"twist-map", "bracket", "curves"} <= parts
+    assert "on purpose" in caplog.text
 
 
 def test_a_hole_without_an_answer_is_planned_when_it_is_looked_at(shown):

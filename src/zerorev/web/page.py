@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -113,7 +114,12 @@ async def _fill(session: Session, pictures: list[tuple[ui.element, View]]) -> No
         if panel.is_deleted:  # left, or another file is opened
             return
         with panel:
-            view(session)
+            try:
+                view(session)
+            except Exception:
+                logging.getLogger("zerorev").exception("a fault in zerorev itself; please report the lines below")
+                fault = ui.label("This could not be drawn: a fault in zerorev itself. The terminal says more.")
+                fault.classes("zr-none").props('role="alert"')
 
 
 def _tabs(session: Session, work: Work) -> None:

@@ -226,7 +226,7 @@ export class Cell {
 
   _showArm(data) {
     this.data = data;
-    for (const old of [this.arm, this.twin]) if (old) this.scene.remove(old.root), old.dispose();
+    for (const old of [this.arm, this.twin]) if (old) this.scene.remove(old.root), free(old.root);
     if (this.failed) return;
     this.arm = new Arm(data);
     this.twin = new Arm(data, this.arm);
@@ -256,13 +256,17 @@ export class Cell {
     this.holes.root.add(this.part);
     this.holes.select(this.selected);
     this.scene.add(this.holes.root);
-    this._showReversals(data.reversals);
+    this._showLegend();
   }
 
   _showReversals(reversals) {
     this.holesData.reversals = reversals;
     if (this.failed) return;
     this.holes.know(reversals);
+    this._showLegend();
+  }
+
+  _showLegend() {
     const next = legend(this.holes);
     this.legend.replaceWith(next);
     this.legend = next;

@@ -64,12 +64,6 @@ export class Arm {
     return this.halos[joint - 1].getWorldPosition(target);
   }
 
-  dispose() {
-    this.root.traverse((object) => object.geometry?.dispose());
-    for (const material of [this.paint, this.veil, this.hidden]) material.dispose();
-    for (const halo of this.halos) halo.material.dispose();
-  }
-
   _shape(solids) {
     return solids.length ? merged(solids.map((solid) => [solidGeometry(solid), this._colour(solid.paint)])) : null;
   }

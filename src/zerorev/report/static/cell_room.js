@@ -14,7 +14,8 @@ export function bytes(text) {
   return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 }
 
-// materials are let go and not disposed of: the last of its kind would take its shader with it, which the next compiles anew
+// materials are let go and not disposed of: the last of its kind would take its shader with it,
+// and the next would compile it anew
 export function free(group) {
   group.traverse((object) => {
     object.geometry?.dispose();

@@ -69,7 +69,7 @@ class _Sender:
         self._waits_since: float | None = None
         self._held: tuple[Any, ...] | None = None
         self._slice: dict[str, Any] | None = None
-        self._drawn: object = None  # the holes that the browser has
+        self._sent: object = None  # the holes that the browser has
         self._holes = throttled(self._send_holes, HOLES_APART)
         self._reversals = throttled(self._send_reversals, HOLES_APART)
         self._motion = throttled(self._send_motion, MOTIONS_APART)
@@ -137,11 +137,11 @@ class _Sender:
         if state.job is not None:
             holes = holes_data(state.job.holes, state.job.T_base_part, state.answers)
             self._scene(holes=holes, selected=state.selected)
-            self._drawn = state.job.holes
+            self._sent = state.job.holes
 
     def _send_reversals(self) -> None:
         state = self._session.state
-        if state.job is not None and state.job.holes is self._drawn:  # others are on their way, with theirs
+        if state.job is not None and state.job.holes is self._sent:  # others are on their way, with theirs
             self._scene(reversals=reversals_data(state.job.holes, state.answers))
 
     def _send_motion(self) -> None:

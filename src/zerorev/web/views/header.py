@@ -63,9 +63,8 @@ def _of_a_job(session: Session) -> None:
 
 def _theme_button(session: Session) -> None:
     """Goes round: as the system, light, dark."""
-    button = ui.button(color=None).classes("zr-quiet").props('flat round dense data-testid="theme"')
-
     page = ui.context.client
+    button = ui.button(color=None).classes("zr-quiet").props('flat round dense data-testid="theme"')
 
     def draw() -> None:
         _, icon, words = next(theme for theme in THEMES if theme[0] is session.theme)
