@@ -7,10 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from zerorev.criteria import measure, objective_of, thesis_objective
+from zerorev.criteria import measure, thesis_objective
 from zerorev.critical import critical
-from zerorev.depth import Deepest, deepest_stroke
-from zerorev.evaluation import Evaluation, evaluate, meets_threshold
+from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.kinematics import wrist_offset
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -19,12 +18,12 @@ from zerorev.model.plan import Baseline, Finding, HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.exact import can_run, search
-from zerorev.search.free import search_free
-from zerorev.search.weighted import search_weighted
+from zerorev.optimum import best_motion, deepest_as_drilled
+from zerorev.search.exact import can_run
+from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
 
-__all__ = ["deepest_as_drilled", "lever_findings", "plan", "plan_deepest"]
+__all__ = ["lever_findings", "plan", "plan_deepest"]
 
 SHORT = 1e-3  # [m] a stroke that can be run wherever any can
 SMALL_OFFSET = 10e-3  # [m] a wrist offset below which the spin hardly moves joints 1 to 3 (theory §1)
@@ -44,9 +43,11 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
     settings = settings or Settings()
-    given = hole.profile is not None
-    best = _given(robot, tool, hole, settings) if given else _searched(robot, tool, hole, settings)
-    answer = _answered(robot, tool, hole, settings, "evaluated" if given else "planned", best)
+    if hole.profile is None:
+        best = best_motion(robot, tool, hole, settings)
+        answer = _answered(robot, tool, hole, settings, "planned", best)
+    else:
+        answer = _evaluated(robot, tool, hole, settings, hole.profile)
     return replace(answer, deepest=deepest_as_drilled(robot, tool, hole, settings).depth)
 
 
@@ -70,12 +71,8 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         findings = _why_none(robot, tool, hole, settings)
         return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings, deepest=0.0)
     hole = replace(hole, depth=deepest.depth)
-    evaluation = evaluate(robot, tool, hole, deepest.profile, deepest.branch, settings)
-    best = deepest.profile, deepest.branch, evaluation
+    best = Order(robot, tool, hole, settings).candidate(deepest.profile, deepest.branch)
     return replace(_answered(robot, tool, hole, settings, "planned", best), deepest=deepest.depth)
-
-
-_Best = tuple[Profile, int, Evaluation]
 
 
 def _answered(
@@ -84,84 +81,41 @@ def _answered(
     hole: Hole,
     settings: Settings,
     status: Literal["planned", "evaluated"],
-    best: _Best | None,
+    best: Candidate | None,
 ) -> HolePlan:
     """The answer that the best motion makes, with its baseline, checked, and with what a user should know of it."""
     offset = wrist_offset(robot, tool)
     if best is None:
         return HolePlan(hole, "infeasible", offset, findings=_why_infeasible(robot, tool, hole, settings))
-    profile, branch, evaluation = best
-    if evaluation.motion is None or evaluation.score is None:
-        return HolePlan(hole, "infeasible", offset, findings=evaluation.findings)
     answer = HolePlan(
         hole=hole,
         status=status,
         wrist_offset=offset,
-        motion=evaluation.motion,
-        score=evaluation.score,
-        measures=measure(robot, tool, hole, evaluation, settings),
-        baseline=_baseline(robot, tool, hole, profile, branch, settings),
-        critical_rates=_critical_rates(robot, tool, hole, profile, branch),
+        motion=best.evaluation.motion,
+        score=best.score,
+        measures=measure(robot, tool, hole, best.evaluation, settings),
+        baseline=_baseline(robot, tool, hole, best.profile, best.branch, settings),
+        critical_rates=_critical_rates(robot, tool, hole, best.profile, best.branch),
     )
     verified = verify_hole(robot, tool, settings, answer)
     answer = replace(answer, verified=verified)
     return replace(answer, findings=_findings(robot, settings, answer))
 
 
-def _searched(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> _Best | None:
-    """The best motion, its stand-off counted from the hole's own target where the corner is placed deeper."""
-    drilled = _to_the_corner(hole, settings)
-    motions = []
-    found = (search_weighted if settings.weights else search)(robot, tool, drilled, settings)
-    if found is not None:
-        motions.append((found.profile, found.branch))
-    free = search_free(robot, tool, drilled, settings) if settings.legs == "free" else None
-    if free is not None:
-        # what is straight is a free leg, too, within the greatest twist rate
-        motions = [free, *(motion for motion in motions if np.abs(motion[0].twist_rate).max() <= settings.max_twist)]
-    answers = [_evaluated(robot, tool, hole, settings, *motion) for motion in motions]
-    return min(answers, key=lambda best: _rank(robot, tool, hole, settings, best), default=None)
+def _evaluated(robot: Robot, tool: Tool, hole: Hole, settings: Settings, profile: Profile) -> HolePlan:
+    """The answer to a given motion on its branch; where none is given, on the one that thesis eq. 4.7 prefers.
 
-
-def _evaluated(robot: Robot, tool: Tool, hole: Hole, settings: Settings, profile: Profile, branch: int) -> _Best:
-    """A motion that was found for the hole down to the programmed corner, for the hole itself."""
-    profile = Profile(profile.standoff + settings.corner, profile.psi)
-    return profile, branch, evaluate(robot, tool, hole, profile, branch, settings)
-
-
-def _rank(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: _Best) -> tuple[float, bool, float]:
-    """The order of motions: fewest reversals, then the motion threshold, then what the settings ask to be least."""
-    score = best[2].score
-    if score is None:
-        return np.inf, True, np.inf
-    cost = float(np.dot(settings.reversal_weights, score.reversals_per_joint))
-    measures = measure(robot, tool, hole, best[2], settings)
-    return cost, not meets_threshold(score, settings), objective_of(settings)(measures)
-
-
-def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Deepest:
-    """The deepest stroke, counted from the hole's own target where the corner is placed deeper."""
-    found = deepest_stroke(robot, tool, _to_the_corner(replace(hole, profile=None), settings), settings)
-    depth = found.depth + settings.corner
-    if found.profile is None or depth <= 0:
-        return Deepest(0.0)
-    return replace(found, depth=depth, profile=Profile(found.profile.standoff + settings.corner, found.profile.psi))
-
-
-def _to_the_corner(hole: Hole, settings: Settings) -> Hole:
-    """The hole down to the programmed corner."""
-    corner = settings.corner
-    return replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner)
-
-
-def _given(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> _Best:
-    """The given motion on its branch, or on the best of all where none is given (by thesis eq. 4.7)."""
-    assert hole.profile is not None
-    profile = hole.profile
+    Which branch a published motion belongs to is no question of the motion threshold, so the thesis' own objective
+    answers it, and not the order by which motions are searched for.
+    """
     branches = range(8) if hole.branch is None else (hole.branch,)
-    evaluations = [evaluate(robot, tool, hole, profile, branch, settings) for branch in branches]
-    best = min(range(len(evaluations)), key=lambda i: thesis_objective(evaluations[i]))
-    return profile, branches[best], evaluations[best]
+    order = Order(robot, tool, hole, settings)
+    evaluations = {branch: evaluate(robot, tool, hole, profile, branch, settings) for branch in branches}
+    branch = min(branches, key=lambda branch: thesis_objective(evaluations[branch]))
+    best = order.judged(profile, branch, evaluations[branch])
+    if best is not None:
+        return _answered(robot, tool, hole, settings, "evaluated", best)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=evaluations[branch].findings)
 
 
 def _baseline(
@@ -198,7 +152,7 @@ def _findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Findi
             f" the motion threshold of {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm"
         )
         if answer.status == "planned":
-            message += "; this is the greatest margin that a motion with so few reversals has"
+            message += "; no motion with so few reversals was found that keeps more"
         found.append(Finding("warning", "threshold", message, hole.id))
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)

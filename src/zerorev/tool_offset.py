@@ -18,7 +18,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.planning import deepest_as_drilled
+from zerorev.optimum import deepest_as_drilled
 
 __all__ = ["LeastOffset", "OffsetCurve", "least_offset", "offset_curve", "offset_of", "with_offset"]
 

@@ -47,6 +47,12 @@ def proven(robot, tool, hole, profile, branch, settings):
     return seen.score
 
 
+def found(robot, tool, hole, settings):
+    """Profile and branch of what the search finds."""
+    motion = search_free(robot, tool, hole, settings)
+    return motion.profile, motion.branch
+
+
 @pytest.mark.parametrize("figures", FIGURES, ids=lambda figures: str(figures[0]))
 def test_as_deep_as_asked_for_and_proven(robot, tool, figures):
     target, asked_mm = figures
@@ -128,7 +134,7 @@ def test_search_finds_what_straight_legs_cannot(robot, tool, objective):
     settings = replace(FIVE, objective=objective)
     hole = hole_at(FIGURES[2][0], 0.042)
     assert deepest_stroke(robot, tool, hole, FIVE).depth < hole.depth
-    profile, branch = search_free(robot, tool, hole, settings)
+    profile, branch = found(robot, tool, hole, settings)
     assert profile.standoff[0] == pytest.approx(hole.depth)
     proven(robot, tool, hole, profile, branch, settings)
 
@@ -137,7 +143,7 @@ def test_each_objective_is_best_at_its_own(robot, tool):
     hole = hole_at(FIGURES[0][0], 0.05)
     scores, turns = {}, {}
     for objective in ("travel", "margin", "plunge_rotation"):
-        profile, branch = search_free(robot, tool, hole, replace(FIVE, objective=objective))
+        profile, branch = found(robot, tool, hole, replace(FIVE, objective=objective))
         scores[objective] = proven(robot, tool, hole, profile, branch, FIVE)
         turns[objective] = abs(profile.psi[profile.corner] - profile.psi[0])
     assert min(scores, key=lambda name: scores[name].travel) == "travel"
@@ -150,7 +156,7 @@ def test_each_objective_is_best_at_its_own(robot, tool):
 def test_search_finds_zero_just_above_the_deepest_and_none_well_below(robot, tool):
     hole = hole_at(FIGURES[1][0])
     depth = deepest_free(robot, tool, hole, FIVE)[0]
-    profile, branch = search_free(robot, tool, replace(hole, depth=0.98 * depth), FIVE)
+    profile, branch = found(robot, tool, replace(hole, depth=0.98 * depth), FIVE)
     proven(robot, tool, hole, profile, branch, FIVE)
     assert search_free(robot, tool, replace(hole, depth=1.15 * depth), FIVE) is None
 
@@ -158,7 +164,7 @@ def test_search_finds_zero_just_above_the_deepest_and_none_well_below(robot, too
 def test_where_the_threshold_cannot_be_kept_the_greatest_margin_is_found(robot, tool):
     settings = replace(FIVE, min_rate=float(np.deg2rad(60.0)))
     hole = hole_at(FIGURES[1][0], 0.03)
-    profile, branch = search_free(robot, tool, hole, settings)
+    profile, branch = found(robot, tool, hole, settings)
     score = proven(robot, tool, hole, profile, branch, FIVE)
     assert 0 < score.min_rate.min() < settings.min_rate
 
@@ -169,6 +175,6 @@ def test_only_the_branch_asked_for_is_searched(robot, tool):
 
 
 def test_a_short_stroke_is_no_special_case(robot, tool):
-    profile, branch = search_free(robot, tool, hole_at(FIGURES[0][0], 5e-4), FIVE)
+    profile, branch = found(robot, tool, hole_at(FIGURES[0][0], 5e-4), FIVE)
     assert profile.standoff[0] == pytest.approx(5e-4)
     proven(robot, tool, hole_at(FIGURES[0][0]), profile, branch, replace(FIVE, blend=1e-4))

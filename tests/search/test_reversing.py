@@ -32,7 +32,7 @@ def problem_of(case: Case, settings: Settings = NO_THRESHOLD, branch: int | None
 def ranked(problem: Problem):
     """What the search finds, by reversals, lack of motion, and travel."""
     found = search(problem.robot, problem.tool, problem.hole, problem.settings)
-    return (np.inf, np.inf, np.inf) if found is None else problem.rank(found)
+    return (np.inf, np.inf, np.inf) if found is None else problem.order.rank(found)[:3]
 
 
 def check_no_branch_is_better(case: Case, settings: Settings) -> None:
@@ -88,10 +88,12 @@ class TestSurvey:
         problem = problem_of(random_hole(1079))
         pairs, found = survey(problem), surveyed(problem)
         for branch in range(8):
-            there = [problem.rank(each) for each in found if each.branch == branch]
+            there = [problem.order.rank(each)[:3] for each in found if each.branch == branch]
             on_grid = min(tuple(pair) for pair in pairs[branch, :, :3])
             assert bool(there) == np.isfinite(on_grid[0])
             if there:
                 assert min(there) <= on_grid
-                alone = [problem.rank(each) for each in surveyed(problem_of(random_hole(1079), branch=branch))]
+                alone = [
+                    problem.order.rank(each)[:3] for each in surveyed(problem_of(random_hole(1079), branch=branch))
+                ]
                 assert there == alone

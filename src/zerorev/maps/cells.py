@@ -9,18 +9,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.depth import deepest_stroke
-from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.kinematics import inverse, tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import Question
-from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.motion import turns_within
+from zerorev.optimum import best_motion, deepest_as_drilled
 from zerorev.prediction import narrowest
-from zerorev.search.exact import search
-from zerorev.search.free import SEGMENTS, search_free
+from zerorev.search.free import SEGMENTS
+from zerorev.search.rank import Candidate
 from zerorev.search.straight import target_spins
 from zerorev.search.thesis_stroke import thesis_stroke
 
@@ -161,7 +159,7 @@ def _why_none(question: Question, hole: Hole) -> int:
 
 
 def _deepest(question: Question, hole: Hole, _: int) -> Found | None:
-    found = deepest_stroke(question.robot, question.tool, hole, question.settings)
+    found = deepest_as_drilled(question.robot, question.tool, hole, question.settings)
     return _stroke(found.depth, found.profile, found.branch)
 
 
@@ -183,22 +181,22 @@ def _stroke(depth: float, profile: Profile | None, branch: int | None) -> Found 
 
 def _fewest_reversals(question: Question, hole: Hole, _: int) -> Found | None:
     best = _best_motion(question, hole)
-    return None if best is None else _motion(float(best[2].reversals), best)
+    return None if best is None else _motion(float(best.reversals), best)
 
 
 def _least_travel(question: Question, hole: Hole, _: int) -> Found | None:
     best = _best_motion(question, hole)
-    if best is None or best[2].reversals > 0 or not meets_threshold(best[2], question.settings):
+    if best is None or best.reversals > 0 or not best.keeps_threshold:
         return None
-    return _motion(float(np.rad2deg(best[2].travel)), best)
+    return _motion(float(np.rad2deg(best.score.travel)), best)
 
 
 def _greatest_margin(question: Question, hole: Hole, _: int) -> Found | None:
     margin = replace(question, settings=replace(question.settings, objective="margin"))
     best = _best_motion(margin, hole)
-    if best is None or best[2].reversals > 0:
+    if best is None or best.reversals > 0:
         return None
-    return _motion(float(np.rad2deg(best[2].min_rate.min())) / 1e3, best)
+    return _motion(float(np.rad2deg(best.score.min_rate.min())) / 1e3, best)
 
 
 def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
@@ -208,31 +206,12 @@ def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
     return Found(float(np.rad2deg(cheapest.spread)) / 1e3, cheapest.branch, None, cheapest.psi)
 
 
-_Best = tuple[Profile, int, Score]
+def _best_motion(question: Question, hole: Hole) -> Candidate | None:
+    return best_motion(question.robot, question.tool, hole, question.settings)
 
 
-def _best_motion(question: Question, hole: Hole) -> _Best | None:
-    """The best motion at the depth: fewest reversals, then the motion threshold, then the objective."""
-    robot, tool, settings = question.robot, question.tool, question.settings
-    found = search(robot, tool, hole, settings)
-    motions = [] if found is None else [(found.profile, found.branch)]
-    free = search_free(robot, tool, hole, settings) if settings.legs == "free" else None
-    if free is not None:
-        motions = [free, *(motion for motion in motions if np.abs(motion[0].twist_rate).max() <= settings.max_twist)]
-    scored = ((*motion, evaluate(robot, tool, hole, *motion, settings).score) for motion in motions)
-    known = [(profile, branch, score) for profile, branch, score in scored if score is not None]
-
-    def rank(best: _Best) -> tuple[int, bool, float]:
-        score = best[2]
-        value = score.travel if settings.objective == "travel" else -float(score.min_rate.min())
-        return score.reversals, not meets_threshold(score, settings), value
-
-    return min(known, key=rank, default=None)
-
-
-def _motion(value: float, best: _Best) -> Found:
-    profile, branch, _ = best
-    return Found(value, branch, profile, float(profile.psi[profile.corner]))
+def _motion(value: float, best: Candidate) -> Found:
+    return Found(value, best.branch, best.profile, best.psi_target)
 
 
 KINDS: dict[str, Kind] = {

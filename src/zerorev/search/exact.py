@@ -20,7 +20,8 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.problem import SAME_COST, Found, Mask, Problem
+from zerorev.search.problem import Mask, Problem
+from zerorev.search.rank import SAME_COST, Candidate
 from zerorev.search.survey import settled, survey, surveyed
 from zerorev.search.valleys import Valleys
 
@@ -29,7 +30,7 @@ __all__ = ["can_run", "search"]
 ALL = np.ones(6, dtype=bool)
 
 
-def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | None:
+def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the objective.
 
     Args:
@@ -48,13 +49,13 @@ def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | 
     found = surveyed(problem) + ([] if best is None else [best])
     if not found:
         return None
-    best = min(found, key=problem.rank)
+    best = min(found, key=problem.order.rank)
     lines = [Valleys(problem, [branch]) for branch in problem.branches]
     for keep in sets_to_keep(problem):
-        if problem.cost_without(keep) > problem.cost(best) + SAME_COST:
+        if problem.cost_without(keep) > problem.order.reversals(best) + SAME_COST:
             break
         kept = [motion for line in lines for motion in line.motions(keep)]
-        best = min([best, *kept], key=problem.rank)
+        best = min([best, *kept], key=problem.order.rank)
     return settled(problem, best)
 
 

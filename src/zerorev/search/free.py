@@ -12,18 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.kernels import free as kernels
 from zerorev.kernels import legs, segments, tube
 from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.line import climb, edge, golden
+from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Rules, bettered, legs_through, motion_of
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
 
@@ -98,12 +97,12 @@ def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tu
                 break
             found = problem.motion(place.branch, place.psi_t, place.depth * (1 - back), "depth", SEGMENTS[-1])
             if found is not None:
-                best = max(best, (float(found[0].standoff[0]), found[0], place.branch), key=lambda deepest: deepest[0])
+                best = max(best, (found.depth, found.profile, place.branch), key=lambda deepest: deepest[0])
                 break
     return best
 
 
-def search_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Profile, int] | None:
+def search_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
     """The best motion of zero reversals on free legs at the depth of the hole.
 
     Where the motion threshold cannot be kept, it is the one of greatest margin.
@@ -115,13 +114,13 @@ def search_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tup
         settings: `min_rate`, at every point by either rule; `max_twist`; `psi_bound`; `objective`.
 
     Returns:
-        profile and branch, or None where there is none.
+        the motion, or None where there is none.
     """
     problem = _Problem(robot, tool, hole, settings)
     found = problem.best(hole.depth)
     if found is None and settings.min_rate > LEAST_RATE:
         found = _Problem(robot, tool, hole, replace(settings, min_rate=0.0, objective="margin")).best(hole.depth)
-    return found
+    return None if found is None else Order(robot, tool, hole, settings).candidate(found.profile, found.branch)
 
 
 class _Place(NamedTuple):
@@ -210,7 +209,7 @@ class _Problem:
             places.append(_Place(-lack(psi_t), branch, psi_t))
         return sorted((place for place in places if place.depth > 0), reverse=True)
 
-    def motion(self, branch: int, psi_t: float, depth: float, goal: Goal, count: int) -> tuple[Profile, Score] | None:
+    def motion(self, branch: int, psi_t: float, depth: float, goal: Goal, count: int) -> Candidate | None:
         """A motion of few segments, begun in the middle of the tubes and bettered from there.
 
         Args:
@@ -242,10 +241,9 @@ class _Problem:
             if lack > GUARD:
                 return None
             profile = motion_of(better, periodic=self.periodic)
-            hole = replace(self.hole, depth=better.depth, profile=None)
-            score = evaluate(self.robot, self.tool, hole, profile, branch, self.settings).score
-            if score is not None and score.reversals == 0 and meets_threshold(score, self.settings):
-                return profile, score
+            found = self.order(better.depth).candidate(profile, branch)
+            if found is not None and found.reversals == 0 and found.keeps_threshold:
+                return found
         return None
 
     def ends(self, branch: int, side: Array, row: Array) -> tuple[float, float]:
@@ -258,7 +256,11 @@ class _Problem:
         first = n - int(np.argmin(np.append(within[n::-1], False))) + 1
         return float(psi[k, first]), float(psi[k, last])
 
-    def best(self, depth: float) -> tuple[Profile, int] | None:
+    def order(self, depth: float) -> Order:
+        """Which motion of a depth is better: by the objective alone, which free legs are made for."""
+        return Order(self.robot, self.tool, replace(self.hole, depth=depth), replace(self.settings, weights=()))
+
+    def best(self, depth: float) -> Candidate | None:
         """The best motion of a depth, by the objective."""
         if self.settings.objective == "margin":
             # most room is where legs could go on longest
@@ -270,25 +272,19 @@ class _Problem:
                 if (motion := self.few_segments(*start, depth)) is not None:
                     found = [motion]
                     break
-        if not found:
-            return None
-        _, profile, branch = min(found, key=lambda motion: motion[0])
-        return profile, branch
+        return self.order(depth).best(found)
 
-    def few_segments(self, branch: int, psi_t: float, depth: float) -> tuple[float, Profile, int] | None:
-        """Cost by the objective, profile and branch of a motion of as few segments as do about as well as more."""
-        objective = self.settings.objective
-        best: tuple[float, Profile, int] | None = None
+    def few_segments(self, branch: int, psi_t: float, depth: float) -> Candidate | None:
+        """A motion of as few segments as do about as well, by the objective, as more."""
+        order, best, least = self.order(depth), None, np.inf
         for count in SEGMENTS:
-            found = self.motion(branch, psi_t, depth, objective, count)
+            found = self.motion(branch, psi_t, depth, self.settings.objective, count)
             if found is None:
                 continue
-            profile, score = found
-            turn = abs(profile.psi[profile.corner] - profile.psi[0])
-            cost = {"travel": score.travel, "margin": -score.min_rate.min(), "plunge_rotation": turn}[objective]
-            if best is not None and cost > best[0] - MORE * abs(best[0]):
+            cost = order.rank(found).cost
+            if best is not None and cost > least - MORE * abs(least):
                 break
-            best = float(cost), profile, branch
+            best, least = found, cost
         return best
 
     def best_places(self, depth: float) -> list[tuple[int, float]]:

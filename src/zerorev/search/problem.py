@@ -1,4 +1,4 @@
-"""What the exact search is asked: one hole, what its legs are held to, and which motion is better than another."""
+"""What the exact search is asked: one hole, and what its legs are held to."""
 
 from __future__ import annotations
 
@@ -9,23 +9,19 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.evaluation import Evaluation, evaluate, meets_threshold
 from zerorev.kernels import legs
 from zerorev.kinematics import TwistPlane, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Score
-from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, straight_motion, target_spins
 
-__all__ = ["SAME_COST", "Asked", "Found", "Mask", "Problem"]
+__all__ = ["Asked", "Mask", "Problem"]
 
 Mask = npt.NDArray[np.bool_]
-
-SAME_COST = 1e-9  # weighted counts of reversals that differ by less are one
 
 
 class Asked(NamedTuple):
@@ -46,34 +42,6 @@ class Asked(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Found:
-    """The best motion that the search found.
-
-    Attributes:
-        profile: two straight legs.
-        branch: 0..7.
-        evaluation: what the motion does to the joints.
-        keeps_threshold: whether the motion threshold is met.
-    """
-
-    profile: Profile
-    branch: int
-    evaluation: Evaluation
-    keeps_threshold: bool
-
-    @property
-    def score(self) -> Score:
-        """What the motion does to the joints."""
-        assert self.evaluation.score is not None
-        return self.evaluation.score
-
-    @property
-    def reversals(self) -> int:
-        """Count of direction changes over all joints."""
-        return self.score.reversals
-
-
-@dataclass(frozen=True)
 class Problem:
     """One hole.
 
@@ -88,6 +56,11 @@ class Problem:
     tool: Tool
     hole: Hole
     settings: Settings
+
+    @cached_property
+    def order(self) -> Order:
+        """Which motion is better than another."""
+        return Order(self.robot, self.tool, self.hole, self.settings)
 
     @cached_property
     def plane(self) -> TwistPlane:
@@ -144,28 +117,10 @@ class Problem:
         mean_rule = settings.min_rate_rule == "mean"
         return self.asked(settings.min_rate, mean_rule=mean_rule, turn_inside=turn_inside), mode
 
-    def found(self, branch: int, psi_t: float, slopes: tuple[float, float]) -> Found | None:
+    def found(self, branch: int, psi_t: float, slopes: tuple[float, float]) -> Candidate | None:
         """The motion of two legs out of one spin at the target, evaluated; None where it cannot be run."""
-        profile = straight_motion(self.hole.depth, psi_t, slopes, periodic=self.periodic)
-        evaluation = evaluate(self.robot, self.tool, self.hole, profile, branch, self.settings)
-        if evaluation.score is None:
-            return None
-        return Found(profile, branch, evaluation, meets_threshold(evaluation.score, self.settings))
-
-    def cost(self, found: Found) -> float:
-        """Weighted count of reversals of what was found."""
-        return float(np.dot(self.weights, found.score.reversals_per_joint))
+        return self.order.candidate(straight_motion(self.hole.depth, psi_t, slopes, periodic=self.periodic), branch)
 
     def cost_without(self, keep: Mask) -> float:
         """What it costs, at least, to leave out the joints that are not in a set."""
         return float(self.weights[np.logical_not(keep)].sum())
-
-    def rank(self, found: Found) -> tuple[float, float, float]:
-        """The order of plans: fewest reversals, then the motion threshold, then the objective; least is best."""
-        settings, score = self.settings, found.score
-        rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
-        margin = float(rates[np.array(score.reversals_per_joint) == 0].min(initial=np.inf))
-        lack = 0.0 if found.keeps_threshold else settings.min_rate - margin
-        start, target, _ = found.profile.psi
-        value = {"travel": score.travel, "margin": -margin, "plunge_rotation": abs(target - start)}
-        return round(self.cost(found), 9), lack, value[settings.objective]

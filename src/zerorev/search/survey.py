@@ -10,7 +10,8 @@ import numpy.typing as npt
 from zerorev.kernels import compass, legs
 from zerorev.kernels import fan as fans
 from zerorev.model._arrays import Array
-from zerorev.search.problem import SAME_COST, Found, Mask, Problem
+from zerorev.search.problem import Mask, Problem
+from zerorev.search.rank import SAME_COST, Candidate
 
 __all__ = ["Fan", "settled", "survey", "surveyed"]
 
@@ -54,7 +55,7 @@ def survey(problem: Problem) -> Array:
     return out
 
 
-def surveyed(problem: Problem) -> list[Found]:
+def surveyed(problem: Problem) -> list[Candidate]:
     """The best few pairs of the grid on each branch, refined.
 
     Args:
@@ -64,8 +65,8 @@ def surveyed(problem: Problem) -> list[Found]:
     return [found for branch in problem.branches for found in _best_of(problem, branch, pairs[branch])]
 
 
-def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Found]:
-    found: list[Found] = []
+def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Candidate]:
+    found: list[Candidate] = []
     fewest = np.inf
     taken: list[int] = []
     for n in sorted(np.flatnonzero(np.isfinite(pairs[:, 0])).tolist(), key=lambda n: tuple(pairs[n, :3])):
@@ -78,20 +79,20 @@ def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Found]:
         refined = _refined(problem, branch, np.array([problem.psi[n], *pairs[n, 3:]]))
         if refined is not None:
             found.append(refined)
-            fewest = min(fewest, problem.cost(refined))
+            fewest = min(fewest, problem.order.reversals(refined))
     return found
 
 
-def _refined(problem: Problem, branch: int, seed: Array) -> Found | None:
+def _refined(problem: Problem, branch: int, seed: Array) -> Candidate | None:
     for nodes in (NODES, FINE_NODES, 4 * FINE_NODES):
         found, best = _searched(compass.refine, problem, branch, seed, problem.step / 2, nodes)
         # what the nodes did not see: look again, more closely
-        if found is not None and problem.cost(found) <= best[0] + SAME_COST:
+        if found is not None and problem.order.reversals(found) <= best[0] + SAME_COST:
             break
     return found
 
 
-def settled(problem: Problem, motion: Found) -> Found:
+def settled(problem: Problem, motion: Candidate) -> Candidate:
     """The bottom of the valley in which a motion lies, whatever reverses; the motion itself where that is no better.
 
     Args:
@@ -101,7 +102,7 @@ def settled(problem: Problem, motion: Found) -> Found:
     for nodes, share in ((NODES, 0.1), *[(FINE_NODES, 0.025)] * MOST_SETTLINGS):
         point = np.array([motion.profile.psi[1], *motion.profile.twist_rate])
         found, _ = _searched(compass.settle, problem, motion.branch, point, share * problem.step, nodes)
-        if found is not None and problem.rank(found) < problem.rank(motion):
+        if found is not None and problem.order.rank(found) < problem.order.rank(motion):
             motion = found
         elif nodes == FINE_NODES:
             break
@@ -110,7 +111,7 @@ def settled(problem: Problem, motion: Found) -> Found:
 
 def _searched(
     search: Any, problem: Problem, branch: int, seed: Array, step: float, nodes: int
-) -> tuple[Found | None, Array]:
+) -> tuple[Candidate | None, Array]:
     """Where a compass search ends, and cost, lack and value there as the nodes see them."""
     (asked, mode), best, point = problem.objective(), np.empty(3), seed.copy()
     search(problem.robot.arm, problem.plane, branch, point, step, problem.weights, asked, mode, nodes, best)

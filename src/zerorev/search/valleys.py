@@ -19,7 +19,8 @@ from zerorev.kernels import legs, pairs
 from zerorev.kernels.field import ROOM
 from zerorev.model._arrays import Array
 from zerorev.motion import outward_rates
-from zerorev.search.problem import Asked, Found, Mask, Problem
+from zerorev.search.problem import Asked, Mask, Problem
+from zerorev.search.rank import Candidate
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
 __all__ = ["Valleys"]
@@ -69,7 +70,7 @@ class Valleys:
         self.step, self.periodic = problem.step, problem.periodic
         self.branches = np.isin(np.arange(8), branches)
 
-    def motions(self, keep: Mask) -> Iterator[Found]:
+    def motions(self, keep: Mask) -> Iterator[Candidate]:
         """The best motions that keep a set of joints: the others turning at the target alone, and within legs, too.
 
         Args:
@@ -82,7 +83,7 @@ class Valleys:
             if motion is not None:
                 yield motion
 
-    def best_motion(self, keep: Mask, *, turn_inside: bool = False) -> Found | None:
+    def best_motion(self, keep: Mask, *, turn_inside: bool = False) -> Candidate | None:
         """The best motion that keeps a set of joints, or None: the threshold first, then the objective.
 
         Args:
@@ -242,7 +243,7 @@ class Valleys:
         )  # fmt: skip
         return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 
-    def _polished(self, keep: Mask, asked: Asked, mode: int, pair: _Pair) -> Found | None:
+    def _polished(self, keep: Mask, asked: Asked, mode: int, pair: _Pair) -> Candidate | None:
         """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
         goal = asked.min_rate
         # nobody asked for the floor: half of it is enough
@@ -276,7 +277,7 @@ class Valleys:
                 return near
         return None
 
-    def _least_rate(self, found: Found, keep: Mask, *, mean_rule: bool) -> float:
+    def _least_rate(self, found: Candidate, keep: Mask, *, mean_rule: bool) -> float:
         """The least rate of the joints to be kept [rad/m]; a joint that turns round and back counts as backwards."""
         score, problem = found.score, self.problem
         least = float((score.mean_rate if mean_rule else score.min_rate)[keep].min(initial=np.inf))
@@ -293,5 +294,5 @@ class Valleys:
                 least = min(least, -abs(float(rates[0, joint])))
         return least
 
-    def _motion(self, pair: _Pair) -> Found | None:
+    def _motion(self, pair: _Pair) -> Candidate | None:
         return self.problem.found(pair.branch, pair.psi_t, (pair.above, pair.below))

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import get_args
 
 import numpy as np
 
 from zerorev.criteria import measure, objective_of
-from zerorev.evaluation import evaluate, meets_threshold, steady_rates
 from zerorev.kinematics import inverse, joint_rates, tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -27,7 +27,7 @@ from zerorev.model.tool import Tool
 from zerorev.motion import turns_within
 from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
-from zerorev.search.problem import Found
+from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, straight_motion, target_spins
 
 __all__ = ["search_weighted"]
@@ -41,7 +41,7 @@ GOLDEN = (np.sqrt(5) - 1) / 2
 ATTEMPTS = 4  # to make good what the points on a leg did not see
 
 
-def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Found | None:
+def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the weighted sum.
 
     Args:
@@ -59,32 +59,31 @@ def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) ->
     if not found:
         return None
     problem = _Problem(robot, tool, hole, settings)
-    best = min(found, key=problem.rank)
+    order = problem.order
+    best = min(found, key=order.rank)
     if not best.keeps_threshold:
         return best  # the greatest margin comes first, and leaves nothing to weigh
-    seeds = [problem.point(one) for one in found if problem.rank(one)[:2] == problem.rank(best)[:2]]
+    seeds = [problem.point(one) for one in found if order.rank(one)[:2] == order.rank(best)[:2]]
     if best.reversals == 0:
         seeds += problem.survey()
     points = [problem.zoomed(seed, settings.min_rate, fine=False) for seed in _apart(seeds)]
     found += [better for point in _apart(points)[:FINALISTS] if (better := problem.polished(point)) is not None]
-    return min(found, key=problem.rank)
+    return min(found, key=order.rank)
 
 
 class _Problem(LegPairs):
     """One hole, and the search for its best pair of legs."""
 
-    def rank(self, found: Found) -> tuple[float, float, float]:
-        """The order of motions; least is best."""
-        settings = self.settings
-        reversals = float(np.dot(settings.reversal_weights, found.score.reversals_per_joint))
-        lack = settings.min_rate - float(steady_rates(found.score, settings).min(initial=np.inf))
-        measures = measure(self.robot, self.tool, self.hole, found.evaluation, settings)
-        return round(reversals, 9), 0.0 if found.keeps_threshold else lack, objective_of(settings)(measures)
+    @cached_property
+    def order(self) -> Order:
+        """Which motion is better than another."""
+        return Order(self.robot, self.tool, self.hole, self.settings)
 
-    def point(self, found: Found) -> Point:
+    def point(self, found: Candidate) -> Point:
         """The motion as two legs out of one spin."""
         plunge, retract = found.profile.twist_rate.tolist()
-        return Point(self.rank(found)[2], found.branch, float(found.profile.psi[1]), (plunge, retract))
+        measures = measure(self.robot, self.tool, self.hole, found.evaluation, self.settings)
+        return Point(objective_of(self.settings)(measures), found.branch, found.psi_target, (plunge, retract))
 
     def survey(self) -> list[Point]:
         """The best pairs without reversal of a grid of spins, the least of each valley, best first."""
@@ -184,7 +183,7 @@ class _Problem(LegPairs):
                 break
         return best
 
-    def polished(self, rough: Point) -> Found | None:
+    def polished(self, rough: Point) -> Candidate | None:
         """The motion of a point, zoomed in on finely until it keeps what it should at what the points did not see."""
         least = self.settings.min_rate
         for _ in range(ATTEMPTS):
@@ -193,13 +192,10 @@ class _Problem(LegPairs):
                 return None
             periodic = self.settings.psi_bound is None
             profile = straight_motion(self.hole.depth, point.psi_t, point.slopes, periodic=periodic)
-            evaluation = evaluate(self.robot, self.tool, self.hole, profile, point.branch, self.settings)
-            if evaluation.score is None:
-                return None
-            if meets_threshold(evaluation.score, self.settings):
-                return Found(profile, point.branch, evaluation, True)
-            short = self.settings.min_rate - float(steady_rates(evaluation.score, self.settings).min(initial=np.inf))
-            least += max(1.5 * short, LEAST_RATE)
+            found = self.order.candidate(profile, point.branch)
+            if found is None or found.keeps_threshold:
+                return found
+            least += max(1.5 * self.order.lack(found), LEAST_RATE)
         return None
 
 

@@ -18,7 +18,7 @@ from zerorev.report.reproduce.section import Cell, Column, Picture, Result, Sect
 from zerorev.report.reproduce.statistics import mean_interval, rate_interval
 from zerorev.report.reproduce.swarm import standard_runs
 from zerorev.search.exact import search
-from zerorev.search.problem import Found
+from zerorev.search.rank import Candidate
 from zerorev.search.swarm import SwarmResult
 
 __all__ = ["make"]
@@ -97,7 +97,7 @@ def make(context: Context) -> Section:
     return Section(text, tuple(results), (table,), (picture,))
 
 
-def _result(n: int, found: int, located: int, *, runs_made: int, ended: Array, exact: Found) -> Result:
+def _result(n: int, found: int, located: int, *, runs_made: int, ended: Array, exact: Candidate) -> Result:
     low, high = rate_interval(found, runs_made)
     share_low, share_high = mean_interval(ended)
     what = f"{found} of {runs_made} runs, {100 * found / runs_made:.0f} % ({100 * low:.0f} to {100 * high:.0f})"
