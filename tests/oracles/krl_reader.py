@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 import numpy as np
 
@@ -137,6 +138,42 @@ def read(text: str) -> KrlProgram:
     if not ended:
         raise KrlError("no END")
     return program
+
+
+def commands(text: str) -> list[tuple[str | Fraction, ...]]:
+    """What a text tells a controller, character by character: words in capitals, signs and exact numbers, line by line.
+
+    A text with a character that is not certain to be read so by every controller is an error.
+    """
+    found: list[tuple[str | Fraction, ...]] = []
+    line: list[str] = []
+    word, remark, header = "", False, False
+    for at, character in enumerate(text + "\n"):
+        if character == "\r" and text[at + 1 : at + 2] == "\n":
+            continue
+        if character == "\n":
+            line += [word] if word else []
+            if line:
+                found.append(tuple(exact(each) for each in line))
+            line, word, remark, header = [], "", False, False
+        elif not (character == "\t" or " " <= character <= "~"):
+            raise KrlError(f"character {ord(character)}")
+        elif remark or header:
+            continue
+        elif character == ";":
+            remark = True
+        elif character == "&" and not found and not line and not word:
+            header = True
+        elif character in " \t{}(),:=":
+            line += ([word] if word else []) + ([character] if character.strip() else [])
+            word = ""
+        else:
+            word += character.upper()
+    return found
+
+
+def exact(word: str) -> str | Fraction:
+    return Fraction(word) if word.lstrip("-").replace(".", "", 1).isdigit() else word
 
 
 def value(name, text, line):

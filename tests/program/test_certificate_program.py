@@ -12,9 +12,10 @@ from scipy.spatial.transform import Rotation
 import zerorev as zr
 import zerorev.verify.certificate_proof as proof
 from zerorev.model.profile import Profile
+from zerorev.program.as_exported import as_exported
 from zerorev.program.krl import to_krl
 from zerorev.program.neutral import build_program
-from zerorev.program.read_back import holes_of, read_krl
+from zerorev.program.read_back import read_krl
 from zerorev.verify.certificate import certify_hole
 from zerorev.verify.certificate_moves import written_motion
 from zerorev.verify.certificate_piece import ball_arithmetic
@@ -31,13 +32,13 @@ def written(plan):
 
 def certify(plan, text=None):
     program = read_krl(text or written(plan))
-    return [hole.certificate for hole in certify_program(plan, program, holes_of(program, plan)).holes]
+    return [hole.certificate for hole in certify_program(plan, program, as_exported(plan, program)).holes]
 
 
 def certify_motion_alone(plan, text):
     """The proof without the comparison with the plan: of the last hole."""
     program, hole_plan = read_krl(text), plan.holes[-1]
-    (*_, hole) = holes_of(program, plan)
+    (*_, hole) = program.holes
     axes = np.deg2rad([[float(angle) for angle in hole.axes_deg]])
     corner = 1 + max(range(len(hole.moves)), key=lambda k: hole.moves[k].point_mm_deg[0])  # a plunge along +X
     with ball_arithmetic():
@@ -233,7 +234,8 @@ def test_a_coordinate_edited_so_that_a_joint_reverses(change, published, plan_of
     assert any(TURN_ROUND.match(reason) for reason in alone.reasons)
     (certificate,) = certify(plan, spoiled)
     assert certificate.verdict == "refuted"
-    assert "off the planned axis" in certificate.reasons[0]
+    assert "stands where the plan has 'LIN" in certificate.reasons[0]
+    assert "off the planned axis" in certificate.reasons[1]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -326,7 +328,7 @@ def swapped(text, old, new):
         (lambda t: swapped(t, "$APO.CDIS=1.0000", "$APO.CDIS=1.5000"), "is blended by 1.5 mm, the plan asks for 1 mm"),
         (lambda t: swapped(t, " C_DIS ; target", " ; target"), "is blended by 0 mm, the plan asks for 1 mm"),
         (lambda t: swapped(t, "$VEL.CP=0.005000", "$VEL.CP=0.006000"), "has a feed of 6 mm/s, the plan 5 mm/s"),
-        (lambda t: re.sub(r"A6 (-?[\d.]+)", lambda m: f"A6 {float(m[1]) - 360:.5f}", t, count=1), "A6 is at|A6 is"),
+        (lambda t: re.sub(r"A6 (-?[\d.]+)", lambda m: f"A6 {float(m[1]) - 360:.5f}", t, count=1), "A6 .* stands"),
         (lambda t: re.sub(r"A2 (-?[\d.]+)", lambda m: f"A2 {float(m[1]) + 0.1:.5f}", t, count=1), "off the planned"),
         (lambda t: re.sub(r"(LIN .*target)\n(.*\n)(LIN .*)", r"\1\n\2\3\n\1\n\3", t), "do not lead in to one deepest"),
     ],
@@ -349,7 +351,8 @@ def test_another_posture(kuka, published, plan_of):
     values = ",".join(f"A{k} {angle:.5f}" for k, angle in enumerate(flipped, 1))
     (certificate,) = certify(plan, re.sub(r"\{AXIS: .*\}", f"{{AXIS: {values}}}", written(plan)))
     assert certificate.verdict == "refuted"
-    assert "are of branch 5, the plan says 4" in certificate.reasons[0]
+    assert "stands where the plan has 'PTP" in certificate.reasons[0]
+    assert "are of branch 5, the plan says 4" in certificate.reasons[1]
 
 
 def test_a_stale_program(published, planned, plan_of):
@@ -360,16 +363,49 @@ def test_a_stale_program(published, planned, plan_of):
     assert certificate.verdict == "refuted"
 
 
+def test_turns_are_proven_and_not_only_compared(published, plan_of):
+    """Without the comparison of the statements: another turn of joint 6 comes out at the start of the stroke."""
+    plan = plan_of(published(1))
+    program = read_krl(re.sub(r"A6 (-?[\d.]+)", lambda m: f"A6 {float(m[1]) - 360:.5f}", written(plan), count=1))
+    certificate = certify_program_hole(plan, plan.holes[0], program, program.holes[0])
+    assert certificate.verdict == "refuted"
+    assert any(reason.startswith("A6 is at") for reason in certificate.reasons)
+
+
 def test_holes_left_out_and_added(published, plan_of):
     one, two, three = (published(number) for number in (1, 2, 3))
     text = written(plan_of(one, three))
     found = certify(plan_of(one, two, three), text)
     assert [certificate.verdict for certificate in found] == ["certified", "refuted", "certified"]
     assert found[1].reasons == ("the program does not drill this hole",)
-    with pytest.raises(zr.InputError, match="hole position 3 is not in the plan"):
-        certify(plan_of(one, two), text)
-    with pytest.raises(zr.InputError, match="hole position 3 is not in the plan"):
-        certify(plan_of(three, one), text)
+    # the second hole is another one; the holes are in another order
+    assert [certificate.verdict for certificate in certify(plan_of(one, two), text)] == ["certified", "refuted"]
+    assert [certificate.verdict for certificate in certify(plan_of(three, one), text)] == ["refuted", "refuted"]
+    with pytest.raises(zr.InputError, match=r"line \d+: a hole that the plan does not have: .* 3, the plan 2"):
+        certify(plan_of(one, two), written(plan_of(one, two, three)))
+
+
+def test_a_hole_that_export_refuses(published, plan_of):
+    """The program was written before the hole failed its check."""
+    plan = plan_of(published(1), published(2))
+    failed = replace(
+        published(2), verified=replace(published(2).verified, passed=False, failures=("joint 3 reverses",))
+    )
+    certificates = certify(replace(plan, holes=(plan.holes[0], failed)), written(plan))
+    assert [certificate.verdict for certificate in certificates] == ["certified", "refuted"]
+    assert "which export refuses: it did not pass the check: joint 3 reverses" in certificates[1].reasons[0]
+    (certificate,) = certify(replace(plan, holes=(failed,)), written(plan_of(published(2))))
+    assert certificate.verdict == "refuted"
+
+
+def test_the_speed_of_the_turn_is_that_of_the_holes_that_are_drilled(published, plan_of):
+    """It is the greatest that any of them needs; hole 2 needs 287 deg/s at this feed, the others less."""
+    three = plan_of(*(published(number) for number in (1, 2, 3)), feed_retract=0.12)
+    some = plan_of(published(1), published(3), feed_retract=0.12)
+    assert re.search(r"ORI1=.*", written(three))[0] != re.search(r"ORI1=.*", written(some))[0]
+    assert [each.verdict for each in certify(three, written(some))] == ["certified", "refuted", "certified"]
+    stale = written(some).replace(*(re.search(r"ORI1=.*", written(plan))[0] for plan in (some, three)))
+    assert [each.verdict for each in certify(three, stale)] == ["refuted"] * 3
 
 
 def test_a_plan_without_a_score(published, plan_of):

@@ -169,9 +169,6 @@ def test_golden_programs(path, krl):
     program, other = read_program(path), krl.read(path.read_text())
     assert program.name == other.name
     assert [len(hole.moves) for hole in program.holes] == [len(moves) - 1 for moves in other.holes()]
-    assert [f"Hole {k} of {len(program.holes)}: {hole.id}" for k, hole in enumerate(program.holes, 1)] == [
-        fold for fold in other.folds if fold.startswith("Hole")
-    ]
 
 
 @pytest.fixture(scope="module")
@@ -186,32 +183,45 @@ LIN = "LIN {X 500.0000,Y 300.0000,Z 800.0000,A 0.0000,B 0.0000,C 5.9388}"
     ("old", "new", "what"),
     [
         ("$VEL.CP=", "WAIT SEC 1\n$VEL.CP=", "'WAIT SEC 1' is not a statement that zerorev writes"),
-        ("$VEL.CP=", "$OUT[1]=TRUE\n$VEL.CP=", "not a statement"),
-        ("$VEL.CP=", "$OV_PRO=50\n$VEL.CP=", r"\$OV_PRO is not a variable that zerorev sets"),
+        ("$VEL.CP=", "$OUT[1]=TRUE\n$VEL.CP=", "is neither a name nor a number"),
+        ("$VEL.CP=", "$OV_PRO=50\n$VEL.CP=", r"'\$OV_PRO=50' is not a statement that zerorev writes"),
         ("$VEL.CP=", "$VEL.CP=-", "a number above 0"),
         ("$VEL.CP=", "; $VEL.CP=", r"a LIN before \$VEL.CP is set"),
         ("$APO.CDIS=", "; $APO.CDIS=", r"a LIN before \$APO.CDIS is set"),
         ("$APO.CDIS=1.0000", "$APO.CDIS=0.0000", "a number above 0"),
-        ("$ORI_TYPE=#VAR", "$ORI_TYPE=#JOINT", "accepted: #VAR"),
-        ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "accepted: #BASE"),
+        ("$ORI_TYPE=#VAR", "$ORI_TYPE=#JOINT", r"accepted: \$ORI_TYPE=#VAR\)"),
+        ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", r"accepted: \$IPO_MODE=#BASE\)"),
         ("$ORI_TYPE=#VAR\n", "", r"a move before \$ORI_TYPE is set"),
         ("$TOOL=", "$TOOL={FRAME: X 1,Y 0,Z 0,A 0,B 0,C 0}\n$TOOL=", r"\$TOOL is set a second time"),
         ("$VEL.CP=", "$BASE={FRAME: X 1,Y 0,Z 0,A 0,B 0,C 0}\n$VEL.CP=", r"\$BASE is set a second time"),
         ("BAS (#VEL_PTP", "$ADVANCE=3\nBAS (#INITMOV,0 )\nBAS (#VEL_PTP", "INITMOV would undo"),
         (LIN, LIN.replace("LIN", "LIN_REL"), "not a statement"),
-        (LIN, LIN.replace("Y 300.0000,", ""), "a number for each of X Y Z A B C"),
-        (LIN, LIN.replace("Y 300.0000", "Y 3e2"), "a number for each"),
-        (LIN, LIN.replace("Y 300.0000", "Y nan"), "a number for each"),
-        (LIN, LIN.replace("X 500.0000,Y 300.0000", "Y 300.0000,X 500.0000"), "in this order"),
-        (LIN, LIN.replace("Y 300.0000", "Y \u0663"), "not ASCII"),
+        (LIN, LIN.replace("Y 300.0000,", ""), "LIN {X 0,Y 0,.* a number for each 0"),
+        (LIN, LIN.replace("Y 300.0000", "Y 3e2"), "'3e2' in .* is neither a name nor a number"),
+        (LIN, LIN.replace("Y 300.0000", "Y nan"), "LIN {X 0,Y 0,.* a number for each 0"),
+        (LIN, LIN.replace("X 500.0000,Y 300.0000", "Y 300.0000,X 500.0000"), "is not a statement that zerorev writes"),
+        (LIN, LIN.replace("Y 300.0000", "Y \u0663"), "a character that is not ASCII"),
         (LIN + " C_DIS", LIN + " C_VEL", "not a statement"),
-        ("PTP {", "PTP {AXIS: A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {", "a PTP that is not the first move of a hole"),
+        ("PTP {", "PTP {AXIS: A1 0,A2 0,A3 0,A4 0,A5 0,A6 0}\nPTP {", "ends without a LIN"),
         ("PTP {", LIN + "\nPTP {", "a LIN before the PTP of its hole"),
-        (";FOLD Hole 1 of 2: position 1", "; position 1", "a PTP that is not the first move"),
         ("\nEND\n", "\n", "not complete"),
-        ("\nEND\n", "\nEND\nHALT\n", "a statement after END"),
+        ("\nEND\n", "\nEND\nHALT\n", "'HALT' after END"),
         ("DEF ", "DEF other ( )\nDEF ", "a second program"),
-        ("EXT BAS", "$ADVANCE=3 $ADVANCE=4", "not a statement|a number above 0"),
+        ("EXT BAS", "$ADVANCE=3 $ADVANCE=4", "not a statement"),
+        ("EXT BAS (BAS_COMMAND :IN,REAL :IN )\n", "", "a move before EXT BAS is set"),
+        ("BAS (#INITMOV,0 )\n", "", r"a move before BAS \(#INITMOV\) is set"),
+        ("BAS (#VEL_PTP,20 )\n", "", r"a move before BAS \(#VEL_PTP\) is set"),
+        ("BAS (#VEL_PTP,20 )", "BAS (#VEL_PTP,0 )", "a number above 0"),
+        ("BAS (#INITMOV,0 )\nBAS (#VEL_PTP,20 )", "BAS (#VEL_PTP,20 )\nBAS (#INITMOV,0 )", "INITMOV would undo"),
+        ("&ACCESS", "&ACCES", "'&ACCES' in"),
+        ("&ACCESS", " &ACCESS", "'&ACCESS' in"),
+        ("EXT BAS", "&REL 2\nEXT BAS", "'&REL' in"),
+        ("DEF test ( )", "DEF test ( ) LIN", r"accepted: DEF name \( \)"),
+        ("DEF test ( )", "DEF test (a :IN)", r"accepted: DEF name \( \)"),
+        ("DEF test ( )", "DEF tests_name_is_now_too_long ( )", "of at most 24 letters"),
+        ("DEF test ( )", "GLOBAL DEF test ( )", "'GLOBAL DEF test .*' before DEF"),
+        ("C_DIS ; target", "C_DIS" + 300 * " " + "C_DIS ; target", "a statement of 3.. characters"),
+        ("BAS (#VEL_PTP,20 )", "BAS (#VEL_PTP,20 ) BAS (#VEL_PTP,30 )", "not a statement"),
     ],
 )
 def test_what_zerorev_does_not_write_is_refused(old, new, what, text):
@@ -219,6 +229,50 @@ def test_what_zerorev_does_not_write_is_refused(old, new, what, text):
     with pytest.raises(InputError, match=what) as caught:
         read_krl(text.replace(old, new, 1), "here.src")
     assert re.match(r"here\.src, line \d+: ", str(caught.value))
+
+
+# every control character but tab and line feed; what Python, Unicode or another editor take for the end of a line
+ODD = [chr(code) for code in (*range(9), *range(11, 32), 0x7F, 0x85, 0xA0, 0xE4, 0xFEFF, 0x2028, 0x2029)]
+
+
+@pytest.mark.parametrize("odd", ODD, ids=lambda odd: f"{ord(odd):#x}")
+@pytest.mark.parametrize("place", ["comment", "statement", "header"])
+def test_no_character_that_a_controller_may_read_otherwise(odd, place, text, tmp_path):
+    hidden = text.replace(
+        *{
+            "comment": ("$VEL.CP=", f"; see{odd}$VEL.CP="),
+            "statement": (" C_DIS", f"{odd} C_DIS"),
+            "header": ("&COMMENT drilling", f"&COMMENT {odd}drilling"),
+        }[place],
+        1,
+    )
+    line = next(k for k, line in enumerate(hidden.split("\n"), 1) if odd in line)
+    with pytest.raises(InputError, match=rf"line {line}: a (character|carriage return)"):
+        read_krl(hidden)
+    path = tmp_path / "odd.src"
+    path.write_bytes(hidden.encode())
+    with pytest.raises(InputError, match=rf"line {line}: a (character|carriage return)"):
+        read_program(path)
+
+
+def test_what_a_controller_adds_makes_no_difference(text, tmp_path):
+    program, path = read_krl(text), tmp_path / "test.src"
+    header = "&ACCESS RVP1\n&REL 27\n&PARAM EDITMASK = *\n& PARAM TEMPLATE = C:\\KRC\\Vorlage\n&USER a\n&COMMENT b\n"
+    kept = text[text.index("DEF") :]
+    for other in (
+        kept,
+        header + kept,
+        text.replace("\n", "\r\n"),
+        text.rstrip("\n"),
+        "\ufeff" + text,
+        text.lower(),
+        text.replace("DEF test ( )", "DEF  test( )").replace("=", " = ").replace(",", ",\t "),
+        text.replace("\n", "  \n\n"),
+        re.sub(r" *;.*", "", text),
+        re.sub(r"(?m)^(\$|LIN|PTP)", r"   \1", text).replace("; target", ";FOLD LIN P1;%{PE}%R 8"),
+    ):
+        path.write_text(other, newline="")
+        assert read_program(path) == program
 
 
 def test_the_line_of_a_fault(text):
@@ -230,13 +284,13 @@ def test_the_line_of_a_fault(text):
 
 
 def test_the_last_move_of_a_hole_must_be_an_exact_stop(text):
-    with pytest.raises(InputError, match=r"the last move of hole position 1 \(line \d+\) is blended"):
+    with pytest.raises(InputError, match=r"the last move of a hole \(line \d+\) is blended"):
         read_krl(text.replace(" ; end of the stroke", " C_DIS ; end of the stroke", 1))
 
 
 def test_a_hole_without_moves(text):
     without = "\n".join(line for line in text.split("\n") if not line.startswith("LIN"))
-    with pytest.raises(InputError, match="hole position 1 ends without a PTP and a LIN"):
+    with pytest.raises(InputError, match=r"the hole that begins at line \d+ ends without a LIN"):
         read_krl(without)
     first = text.index(";FOLD Hole")
     with pytest.raises(InputError, match="the program has no holes"):

@@ -39,19 +39,20 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
         check_file(plan)
     answer = read_plan(plan)
     if program is not None:
-        from zerorev.program.read_back import holes_of, read_program
+        from zerorev.program.read_back import read_program
 
         written = read_program(program)
-        drilled = holes_of(written, answer)
 
     from zerorev.verify import verify_plan
 
     with terminal.busy("checking"):
         answer = verify_plan(answer)
     if program is not None:
+        from zerorev.program.as_exported import as_exported
         from zerorev.verify.certificate_program import certify_program
 
         with terminal.busy("proving"):
+            drilled = as_exported(answer, written, program.stem)
             answer = certify_program(answer, written, drilled)
     elif certify:
         from zerorev.verify.certificate import certify_plan

@@ -25,6 +25,7 @@ __all__ = [
     "json_document",
     "json_pieces",
     "json_text",
+    "read_bytes",
     "read_text",
     "row_of",
     "yaml_document",
@@ -76,7 +77,25 @@ def read_text(path: Path, accepted: str) -> str:
         accepted: what kind of file belongs here, for the message.
 
     Raises:
-        InputError: no such file, a folder, too large, not readable, not UTF-8.
+        InputError: as `read_bytes`, or not UTF-8.
+    """
+    try:
+        return read_bytes(path, accepted).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(
+            f"is not text (byte {error.start} is not UTF-8)", where=str(path), accepted=f"{accepted}, in UTF-8"
+        ) from None
+
+
+def read_bytes(path: Path, accepted: str) -> bytes:
+    """The content of a file.
+
+    Args:
+        path: which.
+        accepted: what kind of file belongs here, for the message.
+
+    Raises:
+        InputError: no such file, a folder, too large, not readable.
     """
     try:
         if path.is_dir():
@@ -85,13 +104,9 @@ def read_text(path: Path, accepted: str) -> str:
             raise InputError("is not a regular file", where=str(path), accepted=accepted)
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"is larger than {MAX_BYTES // 2**20} MiB", where=str(path), accepted=accepted)
-        return path.read_bytes().decode("utf-8-sig")
+        return path.read_bytes()
     except FileNotFoundError:
         raise InputError("no such file", where=str(path), accepted=accepted) from None
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"is not text (byte {error.start} is not UTF-8)", where=str(path), accepted=f"{accepted}, in UTF-8"
-        ) from None
     except (OSError, ValueError) as error:  # ValueError: a null byte in the path
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot be read: {why}", where=repr(str(path)), accepted=accepted) from None

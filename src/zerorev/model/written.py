@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from decimal import Decimal
+from typing import NamedTuple
 
-__all__ = ["Six", "WrittenHole", "WrittenMove", "WrittenProgram"]
+__all__ = ["Drilled", "Six", "Statement", "Word", "WrittenHole", "WrittenMove", "WrittenProgram"]
 
 Six = tuple[Decimal, Decimal, Decimal, Decimal, Decimal, Decimal]
+Word = str | Decimal
+
+
+@dataclass(frozen=True)
+class Statement:
+    """What one line of a program tells the controller to do; equal where the controller sees no difference.
+
+    Attributes:
+        words: names and signs in capitals, and numbers.
+        line: of the file, from 1.
+        source: as it stands there, without comment and surplus white space.
+    """
+
+    words: tuple[Word, ...]
+    line: int = field(compare=False)
+    source: str = field(compare=False)
 
 
 @dataclass(frozen=True)
@@ -21,7 +38,7 @@ class WrittenMove:
         feed_m_s: of the tip [m/s].
     """
 
-    line: int
+    line: int = field(compare=False)
     point_mm_deg: Six
     blend_mm: Decimal
     feed_m_s: Decimal
@@ -32,16 +49,16 @@ class WrittenHole:
     """The moves of one hole.
 
     Attributes:
-        id: of the hole, as far as a comment can hold it.
         line: of the file at which the robot moves to the first point, from 1.
         axes_deg: the six axis values there [deg], turns included.
         moves: the straight moves from there on; the last one ends in an exact stop.
+        statements: all of them, from the move to the first point on.
     """
 
-    id: str
-    line: int
+    line: int = field(compare=False)
     axes_deg: Six
     moves: tuple[WrittenMove, ...]
+    statements: tuple[Statement, ...]
 
 
 @dataclass(frozen=True)
@@ -53,9 +70,23 @@ class WrittenProgram:
         tool_mm_deg: the tool frame in the flange frame, as a point.
         base_mm_deg: the part frame in the robot's base frame, as a point.
         holes: in order.
+        head: all statements before the first hole.
     """
 
-    name: str
+    name: str = field(compare=False)  # in capitals it is in the head
     tool_mm_deg: Six
     base_mm_deg: Six
     holes: tuple[WrittenHole, ...]
+    head: tuple[Statement, ...]
+
+
+class Drilled(NamedTuple):
+    """One hole of a plan, and what a program has for it.
+
+    Attributes:
+        hole: of the program; None where it leaves the hole out.
+        wrong: one sentence for each statement that is not the plan's.
+    """
+
+    hole: WrittenHole | None
+    wrong: tuple[str, ...] = ()

@@ -125,8 +125,9 @@ def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list
 
 def _settings(program: Program) -> list[str]:
     turn = TURN_SPEED_RESERVE * np.rad2deg(max(turn_speed(hole) for hole in program.holes))
-    # the twist must never throttle the feed, so the greater of the usual value and the needed one with a reserve
-    allowed = fixed(max(LEAST_TURN_SPEED, np.ceil(turn)), 1)
+    # the twist must never throttle the feed, so the greater of the usual value and the needed one with a reserve; the
+    # last bits of a turn that is a whole number must not decide what is written
+    allowed = fixed(max(LEAST_TURN_SPEED, np.ceil(turn - 1e-6)), 1)
     return [
         ";FOLD INI",
         "BAS (#INITMOV,0 )",

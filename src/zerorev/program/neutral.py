@@ -21,7 +21,7 @@ from zerorev.model.plan import Finding, HolePlan, Plan
 from zerorev.program.lead_in import find_lead_in
 from zerorev.program.waypoints import Waypoint, waypoints, with_blends
 
-__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program"]
+__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals"]
 
 T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
 """The tool frame as written, in the tcp frame."""
@@ -142,7 +142,7 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
         NotExportableError: a hole that was not verified, has an error finding or has no motion; with `skip_failed`,
             only where no hole is left or the plan as a whole has an error finding.
     """
-    refused = _refusals(plan)
+    refused = refusals(plan)
     kept = [hole for hole in plan.holes if hole.hole.id not in refused]
     if None in refused or (refused and not skip_failed) or not kept:
         reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
@@ -170,8 +170,12 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
     )
 
 
-def _refusals(plan: Plan) -> dict[str | None, str]:
-    """Why a hole must not be exported, by its id; under None, why the whole plan must not."""
+def refusals(plan: Plan) -> dict[str | None, str]:
+    """Why a hole must not be exported, by its id; under None, why the whole plan must not.
+
+    Args:
+        plan: with its checks and findings.
+    """
     reasons: dict[str | None, str] = {}
     errors = [finding for finding in plan.findings if finding.level == "error"]
     if whole := [finding.message for finding in errors if finding.hole is None]:

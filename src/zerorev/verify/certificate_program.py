@@ -3,7 +3,8 @@
 The legs and blends of a plan are one thing, what a controller makes of the printed points is another: a straight move
 between two rounded poses lies a little beside the drill axis, and turns about an axis that is a little tilted against
 it. Here the latter is certified, from the first point of a hole on: the lead-in too, each corner sharp and blended by
-the radius that the program sets there. The plan is needed to say that it is this program that was meant.
+the radius that the program sets there. The plan is needed to say that it is this program that was meant: only what is
+equal to it is proven, so that most programs that are not the plan's never reach ball arithmetic.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from zerorev.model.plan import Certificate, HolePlan, Plan
-from zerorev.model.written import WrittenHole, WrittenProgram
+from zerorev.model.written import Drilled, WrittenHole, WrittenProgram
 from zerorev.verify.as_planned import frames_as_planned, moves_as_planned, places
 from zerorev.verify.certificate_claims import Proven, claimed_reversals
 from zerorev.verify.certificate_moves import written_motion
@@ -27,32 +28,32 @@ __all__ = ["certify_program", "certify_program_hole"]
 JOINTS = float(np.deg2rad(0.1))  # between the plan and the rounded program; another turn or branch is far beyond
 
 
-def certify_program(plan: Plan, program: WrittenProgram, holes: Sequence[WrittenHole | None]) -> Plan:
+def certify_program(plan: Plan, program: WrittenProgram, drilled: Sequence[Drilled]) -> Plan:
     """The plan with each `certificate` replaced by the program's.
 
     Args:
         plan: from which the program was exported.
         program: as read back.
-        holes: which of the program's is which of the plan's, one entry a hole of the plan; None where it is left out.
+        drilled: what the program has for each hole of the plan, and what of it is not the plan's.
     """
     return replace(
         plan,
         holes=tuple(
-            replace(hole_plan, certificate=_certified(plan, hole_plan, program, written))
-            for hole_plan, written in zip(plan.holes, holes, strict=True)
+            replace(hole_plan, certificate=_certified(plan, hole_plan, program, own))
+            for hole_plan, own in zip(plan.holes, drilled, strict=True)
         ),
     )
 
 
-def _certified(
-    plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: WrittenHole | None
-) -> Certificate | None:
-    if written is not None:
-        return certify_program_hole(plan, hole_plan, program, written)
+def _certified(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, own: Drilled) -> Certificate | None:
+    if own.hole is not None:
+        return certify_program_hole(plan, hole_plan, program, own.hole, own.wrong)
     return None if hole_plan.motion is None else nothing("refuted", ("the program does not drill this hole",))
 
 
-def certify_program_hole(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: WrittenHole) -> Certificate:
+def certify_program_hole(
+    plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: WrittenHole, differs: Sequence[str] = ()
+) -> Certificate:
     """Prove or refute that a program drills one hole of a plan without reversing a joint.
 
     Args:
@@ -60,12 +61,13 @@ def certify_program_hole(plan: Plan, hole_plan: HolePlan, program: WrittenProgra
         hole_plan: one hole of it.
         program: as read back.
         written: the moves for that hole.
+        differs: what was found in the program that is not the plan's, one sentence each.
     """
     wrong, motion, score = tuple(complete(hole_plan)), hole_plan.motion, hole_plan.score
     if wrong or motion is None or score is None:
         return nothing("refuted", wrong)
     at = places(plan, hole_plan, program, written)
-    wrong = (*frames_as_planned(plan, program), *moves_as_planned(plan, hole_plan, motion, written, at))
+    wrong = (*differs, *frames_as_planned(plan, program), *moves_as_planned(plan, hole_plan, motion, written, at))
     if wrong:
         return nothing("refuted", wrong)
 

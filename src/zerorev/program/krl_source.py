@@ -1,0 +1,83 @@
+"""KRL source as a controller reads it: which characters end a line, begin a comment and separate words.
+
+Where it is not certain how a controller takes a character, the character is refused, in comments too: what zerorev
+takes for a comment must not be a statement to the controller. So a line ends with a line feed, or with a carriage
+return and a line feed, and with nothing else; the only other control character is the tab; all text is ASCII.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from functools import partial
+from typing import NoReturn
+
+from zerorev.model.written import Statement, Word
+
+__all__ = ["Refuse", "shape", "statements", "words"]
+
+Refuse = Callable[[int, str], NoReturn]
+"""Called with the number of a line and what is wrong there."""
+
+LONGEST_STATEMENT = 255  # characters: twice what `export` writes
+
+_ODD = re.compile(r"[^\t -~]")
+_HEADER = re.compile(r"&[ \t]*(?:ACCESS|REL|COMMENT|PARAM|USER)\b", re.IGNORECASE)
+_SIGNS = "{}(),:="
+_WORD = re.compile(rf"[{_SIGNS}]|[^ \t{_SIGNS}]+")
+_NUMBER = re.compile(r"-?[0-9]{1,9}(?:\.[0-9]{1,12})?")
+_NAME = re.compile(r"[$#]?[A-Z_][A-Z0-9_]*(?:\.[A-Z0-9_]+)*", re.IGNORECASE)
+
+
+def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
+    """The statements of a source text, in order: without comments, white space, and the header before `DEF`.
+
+    The header is what a controller keeps of its own about a file: `&ACCESS`, `&REL`, `&PARAM`, `&COMMENT`, `&USER`.
+
+    Args:
+        text: of the file.
+        refuse: called where a controller may read something else than this does.
+    """
+    begun = False
+    for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), start=1):
+        if odd := _ODD.search(line):
+            refuse(number, _named(odd[0]))
+        if not begun and _HEADER.match(line):
+            continue
+        printed = line.partition(";")[0].rstrip()
+        if len(printed) > LONGEST_STATEMENT:
+            refuse(number, f"a statement of {len(printed)} characters: a controller may not read all of it")
+        if source := " ".join(printed.split()):
+            begun = True
+            yield Statement(words(source, partial(refuse, number)), number, source)
+
+
+def words(source: str, refuse: Callable[[str], NoReturn]) -> tuple[Word, ...]:
+    """The words of a statement: signs, names in capitals (KRL does not tell case), and numbers.
+
+    Args:
+        source: one statement, without a comment.
+        refuse: called with what is wrong.
+    """
+    found: list[Word] = []
+    for word in _WORD.findall(source):
+        if _NUMBER.fullmatch(word):
+            found.append(Decimal(word))
+        elif word in _SIGNS or _NAME.fullmatch(word):
+            found.append(word.upper())
+        else:
+            refuse(f"'{word[:60]}' in '{source[:60]}' is neither a name nor a number as zerorev writes it")
+    return tuple(found)
+
+
+def shape(words: tuple[Word, ...]) -> tuple[str, ...]:
+    """The words of a statement, `0` in the place of every number."""
+    return tuple("0" if isinstance(word, Decimal) else word for word in words)
+
+
+def _named(character: str) -> str:
+    if character == "\r":
+        return "a carriage return without a line feed: it is not certain that it ends a line"
+    kind = "that is not ASCII" if ord(character) > 0x7F else "of control"
+    return f"a character {kind} (code {ord(character):#04x}): it is not certain how a controller reads it"
