@@ -5,7 +5,7 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test long bench lint schemas clean
+.PHONY: demo test long soak bench lint schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
 	mkdir -p $(OUT)
@@ -19,11 +19,14 @@ demo: $(READY)  ## plan, check and export the three positions of the thesis, wit
 	$(BIN)/zerorev export $(OUT)/thesis_positions.plan.json --controller krl -o $(OUT)/thesis_positions.src
 
 test: lint  ## what must hold; the tests marked long are left to `make long`
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/kernels -m "not long"
-	$(BIN)/pytest -q -n auto --dist loadgroup -m "not long"
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/kernels -m "not long and not soak"
+	$(BIN)/pytest -q -n auto --dist loadgroup -m "not long and not soak"
 
 long: $(READY)  ## the tests that take minutes
-	$(BIN)/pytest -q -m long
+	$(BIN)/pytest -q -m "long and not soak"
+
+soak: $(READY)  ## the tests that take longer than CI allows
+	$(BIN)/pytest -q -m soak
 
 lint: $(READY)
 	$(BIN)/ruff check .

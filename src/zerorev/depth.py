@@ -25,10 +25,11 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.free import deepest_free
 from zerorev.search.problem import Asked
+from zerorev.search.rank import Candidate
 from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, target_spins
 
-__all__ = ["Deepest", "deepest_stroke"]
+__all__ = ["Deepest", "deepened", "deepest_stroke"]
 
 FIRST_LOOK = 0.06  # of the stretched arm's length: about what a middling hole allows
 STEP = 1.5  # from one depth of the coarse look to the next
@@ -52,11 +53,13 @@ class Deepest:
         depth: [m]; 0 where no stroke, however short, has zero reversals.
         profile: two legs of that stroke, or None.
         branch: 0..7, or None.
+        beyond_cap: of free legs, how deep straight ones go that twist more than `max_twist` [m]; 0 where no deeper.
     """
 
     depth: float
     profile: Profile | None = None
     branch: int | None = None
+    beyond_cap: float = 0.0
 
 
 def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> Deepest:
@@ -75,7 +78,29 @@ def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | No
         return straight
     free = Deepest(*deepest_free(robot, tool, hole, settings))
     steepest = 0.0 if straight.profile is None else float(np.abs(straight.profile.twist_rate).max())
-    return straight if straight.depth > free.depth and steepest <= settings.max_twist else free
+    beyond = 0.0
+    if straight.depth > free.depth and steepest > settings.max_twist:
+        beyond = straight.depth
+        straight = _Search(robot, tool, hole, settings, steepest=settings.max_twist).run()
+    return replace(straight if straight.depth > free.depth else free, beyond_cap=beyond)
+
+
+def deepened(robot: Robot, tool: Tool, hole: Hole, settings: Settings, motion: Candidate) -> Deepest:
+    """The deepest stroke to which a motion leads; its own depth, at least.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: target, direction and reference of the spin.
+        settings: as for `deepest_stroke`.
+        motion: of zero reversals, every joint of which keeps `min_rate` at every point.
+    """
+    own = Deepest(motion.depth, motion.profile, motion.branch)
+    if motion.profile.psi.size > 3:
+        return own
+    steepest = settings.max_twist if settings.legs == "free" else np.inf
+    deeper = _Search(robot, tool, hole, settings, steepest=steepest).run_from(motion)
+    return deeper if deeper.depth > own.depth else own
 
 
 @dataclass(frozen=True)
@@ -109,7 +134,7 @@ class _End:
 class _Search:
     """One hole, and its deepest pairs of straight legs."""
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
+    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, *, steepest: float = np.inf) -> None:
         self.robot, self.tool, self.hole = robot, tool, hole
         self.plane = twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
@@ -119,7 +144,7 @@ class _Search:
         self.psi = target_spins(settings.psi_bound, GRID)
         limits = robot.limits
         self.rules = Rules(
-            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, self.min_rate, psi_bound=settings.psi_bound or 0.0
+            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, self.min_rate, steepest, settings.psi_bound or 0.0
         )
         self.valleys: set[tuple[int, float, float]] = set()  # gone down: posture, depth, spin at the target
         self.unlimited = self.rules._replace(lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
@@ -132,6 +157,17 @@ class _Search:
                 ends += self._deepened(start, max((end.legs.depth for end in ends), default=0.0))
             if any(end.legs.depth >= depth for end in ends):
                 break  # what a coarse look does not think so deep is left out
+        return self._deepest(ends)
+
+    def run_from(self, motion: Candidate) -> Deepest:
+        """To the end of the valley in which a motion lies."""
+        plunge, retract = motion.profile.twist_rate
+        psi = motion.psi_target + motion.depth * np.array([[0.0, max(plunge, retract)], [0.0, min(plunge, retract)]])
+        start = _Start(motion.branch // 2, Legs(np.array([[0.0, motion.depth]] * 2), psi))
+        return self._deepest(self._deepened(start, 0.0))
+
+    def _deepest(self, ends: list[_End]) -> Deepest:
+        """The deepest motion without a reversal at the ends of some valleys."""
         for end in sorted(ends, key=lambda end: -end.legs.depth):
             settled = self._settled(end)
             if settled is not None:
@@ -140,10 +176,10 @@ class _Search:
 
     def asked(self, depth: float) -> Asked:
         """What legs of a depth are held to."""
+        steepest = min(LONGEST_TWIST / depth, self.rules.steepest)
         return Asked(
-            depth, self.min_rate, False, False, self.rules.lower, self.rules.upper, LONGEST_TWIST / depth,
-            self.rules.psi_bound,
-        )  # fmt: skip
+            depth, self.min_rate, False, False, self.rules.lower, self.rules.upper, steepest, self.rules.psi_bound
+        )
 
     def _looks(self) -> list[tuple[float, Array]]:
         """Depths at which some pair may do, least first, and what coarse looks found there, shape (4, K, LOOKED)."""

@@ -1,67 +1,164 @@
 """The one result behind plan, maps, placement and the app: the best motion of a hole, and its deepest stroke.
 
 Every source of motions puts its candidates into one pool, and the one order of motions (`search.rank`) takes the best.
+The deepest motion cut short is a candidate at every lesser depth, and a motion without a reversal that is deeper than
+the deepest stroke found raises it. So the two agree by construction: a motion of zero reversals that keeps the motion
+threshold at every point is found at a depth if and only if the depth is at most the deepest stroke.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from zerorev.depth import Deepest, deepest_stroke
+from zerorev.depth import Deepest, deepened, deepest_stroke
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.exact import search
+from zerorev.search.cut_short import cut_short, descended
+from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
+from zerorev.search.problem import Problem
 from zerorev.search.rank import Candidate, Order
+from zerorev.search.straight import LEAST_RATE
 from zerorev.search.weighted import search_weighted
 
-__all__ = ["best_motion", "deepest_as_drilled"]
+__all__ = ["Optimum", "best_motion", "deepest_as_drilled", "optimum"]
+
+SAME_PLACE = 1e-9  # [m]
+SAME_RATE = 1e-6  # relative: by so much the slowest joint may be below the motion threshold and still keep it
 
 
-def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
-    """The best motion of a hole, its stand-off counted from the hole's own target where the corner is placed deeper.
+@dataclass(frozen=True)
+class Optimum:
+    """What is best for a hole.
+
+    Attributes:
+        motion: the best one at the hole's depth, or None where no branch can run any.
+        deepest: the deepest stroke without a reversal.
+    """
+
+    motion: Candidate | None
+    deepest: Deepest
+
+
+def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum:
+    """The best motion of a hole, and its deepest stroke; stand-offs are counted from the hole's own target.
 
     Args:
         robot: the arm.
         tool: the drill.
-        hole: what to drill; its `branch`, if any, is the only one searched.
+        hole: what to drill; its `branch`, if any, is the only one searched; a given motion is left aside.
         settings: how; with `weights` their sum decides, else the objective.
-
-    Returns:
-        the motion, or None where no branch can run any.
     """
-    drilled, order = _to_the_corner(hole, settings), Order(robot, tool, hole, settings)
-    straight = (search_weighted if settings.weights else search)(robot, tool, drilled, settings)
-    free = search_free(robot, tool, drilled, settings) if settings.legs == "free" else None
-    if free is not None and straight is not None and np.abs(straight.profile.twist_rate).max() > settings.max_twist:
-        straight = None
-    return order.best(
-        order.candidate(_from_the_target(found.profile, settings), found.branch)
-        for found in (straight, free)
-        if found is not None
-    )
+    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    best = pool.best()
+    return Optimum(pool.from_the_target(best), pool.as_drilled(pool.raised(best)))
+
+
+def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
+    """The best motion of `optimum` alone."""
+    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    return pool.from_the_target(pool.best())
 
 
 def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Deepest:
-    """The deepest stroke, counted from the hole's own target where the corner is placed deeper."""
-    found = deepest_stroke(robot, tool, _to_the_corner(replace(hole, profile=None), settings), settings)
-    depth = found.depth + settings.corner
-    if found.profile is None or depth <= 0:
-        return Deepest(0.0)
-    return replace(found, depth=depth, profile=_from_the_target(found.profile, settings))
+    """The deepest stroke of `optimum` alone.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: where to drill; where its depth, searched for or with the motion that it gives, is deeper than the deepest
+            stroke found otherwise and has no reversal, the stroke is found from there.
+        settings: as for `optimum`.
+    """
+    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    if pool.deepest.depth >= pool.hole.depth:
+        return pool.as_drilled(pool.deepest)
+    best = [without_reversal(Problem(robot, tool, pool.hole, settings)), pool.free, *pool.given(hole)]
+    return pool.as_drilled(pool.raised(pool.order.best(best)))
 
 
-def _to_the_corner(hole: Hole, settings: Settings) -> Hole:
-    """The hole down to the programmed corner."""
-    corner = settings.corner
-    return replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner)
+class _Pool:
+    """The candidates of one hole, all of them for the hole down to the programmed corner."""
 
+    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
+        self.robot, self.tool, self.settings, self.asked = robot, tool, settings, hole
+        corner = settings.corner
+        down = replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner)
+        self.hole = down if corner else hole
+        self.order = Order(robot, tool, self.hole, settings)
 
-def _from_the_target(profile: Profile, settings: Settings) -> Profile:
-    """A motion that was found for the hole down to the programmed corner, for the hole itself."""
-    return Profile(profile.standoff + settings.corner, profile.psi)
+    @cached_property
+    def deepest(self) -> Deepest:
+        """The deepest stroke, whatever the depth of the hole."""
+        return deepest_stroke(self.robot, self.tool, self.hole, self.settings)
+
+    @cached_property
+    def free(self) -> Candidate | None:
+        """The best motion of free legs, where the settings ask for such."""
+        if self.settings.legs == "straight":
+            return None
+        return search_free(self.robot, self.tool, self.hole, self.settings)
+
+    def cut(self) -> Candidate | None:
+        """The deepest motion cut short."""
+        found, depth = self.deepest, self.hole.depth
+        if found.profile is None or found.branch is None or depth > found.depth:
+            return None
+        return self.order.candidate(cut_short(found.profile, depth), found.branch)
+
+    def given(self, hole: Hole) -> list[Candidate]:
+        """A given motion on any branch on which it could have been searched for."""
+        settings, profile = self.settings, hole.profile
+        if profile is None or abs(profile.standoff.min() - settings.corner) > SAME_PLACE:
+            return []
+        kinked = settings.legs == "straight" and profile.psi.size > 3
+        steep = settings.legs == "free" and np.abs(profile.twist_rate).max() > settings.max_twist
+        if kinked or steep or np.abs(profile.psi).max() > (settings.psi_bound or np.inf):
+            return []
+        down = Profile(profile.standoff - settings.corner, profile.psi)
+        branches = range(8) if hole.branch is None else (hole.branch,)
+        found = [self.order.candidate(down, branch) for branch in branches]
+        return [one for one in found if one is not None]
+
+    def best(self) -> Candidate | None:
+        """The best of the pool."""
+        cut, order = self.cut(), self.order
+        known = [one for one in (cut, self.free) if one is not None]
+        straight = search_weighted if self.settings.weights else search
+        best = order.best([straight(self.robot, self.tool, self.hole, self.settings, known), *known])
+        if best is not None and best is cut:  # the search has overlooked its valley
+            best = descended(order, best)
+        return best
+
+    def raised(self, best: Candidate | None) -> Deepest:
+        """The deepest stroke, the best motion taken into account."""
+        if best is None or best.reversals or best.depth <= self.deepest.depth:
+            return self.deepest
+        if best.score.min_rate.min() < max(self.settings.min_rate, LEAST_RATE / 2) * (1 - SAME_RATE):
+            return self.deepest
+        deeper = deepened(self.robot, self.tool, self.hole, self.settings, best)
+        return replace(deeper, beyond_cap=self.deepest.beyond_cap)
+
+    def from_the_target(self, found: Candidate | None) -> Candidate | None:
+        """A motion with its stand-off counted from the hole's own target."""
+        if found is None or not self.settings.corner:
+            return found
+        order = Order(self.robot, self.tool, self.asked, self.settings)
+        return order.candidate(self._up(found.profile), found.branch)
+
+    def as_drilled(self, found: Deepest) -> Deepest:
+        """A stroke counted from the hole's own target."""
+        depth = found.depth + self.settings.corner
+        beyond = max(found.beyond_cap + self.settings.corner, 0.0)
+        if found.profile is None or depth <= 0:
+            return Deepest(0.0, beyond_cap=beyond)
+        return replace(found, depth=depth, profile=self._up(found.profile), beyond_cap=beyond)
+
+    def _up(self, profile: Profile) -> Profile:
+        return Profile(profile.standoff + self.settings.corner, profile.psi)

@@ -9,6 +9,7 @@ import numpy as np
 
 from zerorev.criteria import measure, thesis_objective
 from zerorev.critical import critical
+from zerorev.depth import Deepest
 from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.kinematics import wrist_offset
 from zerorev.model._arrays import Array
@@ -18,7 +19,7 @@ from zerorev.model.plan import Baseline, Finding, HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.optimum import best_motion, deepest_as_drilled
+from zerorev.optimum import deepest_as_drilled, optimum
 from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
@@ -44,11 +45,11 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     """
     settings = settings or Settings()
     if hole.profile is None:
-        best = best_motion(robot, tool, hole, settings)
-        answer = _answered(robot, tool, hole, settings, "planned", best)
-    else:
-        answer = _evaluated(robot, tool, hole, settings, hole.profile)
-    return replace(answer, deepest=deepest_as_drilled(robot, tool, hole, settings).depth)
+        found = optimum(robot, tool, hole, settings)
+        answer = _answered(robot, tool, hole, settings, "planned", found.motion)
+        return _with_deepest(answer, settings, found.deepest)
+    answer = _evaluated(robot, tool, hole, settings, hole.profile)
+    return _with_deepest(answer, settings, deepest_as_drilled(robot, tool, hole, settings))
 
 
 def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> HolePlan:
@@ -65,14 +66,15 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         status is `infeasible` and the hole is as it was.
     """
     settings = settings or Settings()
-    hole = replace(hole, profile=None)
     deepest = deepest_as_drilled(robot, tool, hole, settings)
+    hole = replace(hole, profile=None)
     if deepest.profile is None or deepest.branch is None:
         findings = _why_none(robot, tool, hole, settings)
-        return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings, deepest=0.0)
+        answer = HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
+        return _with_deepest(answer, settings, deepest)
     hole = replace(hole, depth=deepest.depth)
     best = Order(robot, tool, hole, settings).candidate(deepest.profile, deepest.branch)
-    return replace(_answered(robot, tool, hole, settings, "planned", best), deepest=deepest.depth)
+    return _with_deepest(_answered(robot, tool, hole, settings, "planned", best), settings, deepest)
 
 
 def _answered(
@@ -156,6 +158,21 @@ def _findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Findi
         found.append(Finding("warning", "threshold", message, hole.id))
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
+
+
+def _with_deepest(answer: HolePlan, settings: Settings, deepest: Deepest) -> HolePlan:
+    """The answer with its deepest stroke, and what a user should know of that."""
+    found, hole = list(answer.findings), answer.hole.id
+    if settings.min_rate_rule == "mean" and settings.min_rate > 0 and deepest.depth > 0:
+        message = "the deepest stroke is a lower bound: it keeps the motion threshold at every point"
+        found.append(Finding("info", "deepest", message, hole))
+    if deepest.beyond_cap > deepest.depth:
+        message = (
+            f"straight legs that turn the tool by more than {np.rad2deg(settings.max_twist) / 1e3:g} deg/mm drill"
+            f" {deepest.beyond_cap * 1e3:.3f} mm without a reversal, free legs within it {deepest.depth * 1e3:.3f} mm"
+        )
+        found.append(Finding("info", "deepest", message, hole))
+    return replace(answer, deepest=deepest.depth, findings=tuple(found))
 
 
 def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:

@@ -11,7 +11,7 @@ down from once more (`survey.settled`): what joints that may turn do is no set's
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -25,12 +25,14 @@ from zerorev.search.rank import SAME_COST, Candidate
 from zerorev.search.survey import settled, survey, surveyed
 from zerorev.search.valleys import Valleys
 
-__all__ = ["can_run", "search"]
+__all__ = ["can_run", "search", "without_reversal"]
 
 ALL = np.ones(6, dtype=bool)
 
 
-def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
+def search(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, known: Sequence[Candidate] = ()
+) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the objective.
 
     Args:
@@ -38,12 +40,13 @@ def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidat
         tool: the drill.
         hole: what is drilled; its `branch`, if any, is the only one searched; its stand-off counts from its target.
         settings: threshold, bound on the spin, objective, weights of the joints.
+        known: motions of this hole that were found otherwise; the answer is no worse than any of them.
 
     Returns:
         the motion, or None where no branch can run any.
     """
     problem = Problem(robot, tool, hole, settings)
-    best = Valleys(problem, problem.branches).best_motion(ALL)
+    best = problem.order.best([without_reversal(problem), *known])
     if best is not None and best.reversals == 0:
         return best
     found = surveyed(problem) + ([] if best is None else [best])
@@ -57,6 +60,15 @@ def search(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidat
         kept = [motion for line in lines for motion in line.motions(keep)]
         best = min([best, *kept], key=problem.order.rank)
     return settled(problem, best)
+
+
+def without_reversal(problem: Problem) -> Candidate | None:
+    """The best motion that was made to keep the direction of all six joints; None where the valleys show none.
+
+    Args:
+        problem: what is asked.
+    """
+    return Valleys(problem, problem.branches).best_motion(ALL)
 
 
 def can_run(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> bool:

@@ -26,7 +26,7 @@ from zerorev.model.plan import Measures
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JUMP, turns_within
-from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST
+from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
 
@@ -153,7 +153,7 @@ class LegPairs:
             spare[i] = np.where(sides.inside[row, i] > 0, np.where(fits, np.inf, -1.0), spare[i])
         end = mean * sides.sense[row].T * depth  # exact where a joint keeps its direction
         worst = np.minimum(spare, np.minimum(end + sides.room[row, 0].T, sides.room[row, 1].T - end)).min(axis=0)
-        worst[np.isnan(worst) | (np.abs(slope) * depth > LONGEST_TWIST)] = -np.inf
+        worst[np.isnan(worst) | (np.abs(slope) > steepest_twist(self.settings, depth))] = -np.inf
         if self.settings.psi_bound is not None:
             worst[np.abs(psi_t + slope * depth) > self.settings.psi_bound] = -np.inf
         return worst, slowest[sides.keep].min(axis=0, initial=np.inf)

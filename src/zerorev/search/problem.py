@@ -17,7 +17,7 @@ from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, straight_motion, target_spins
+from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 
 __all__ = ["Asked", "Mask", "Problem"]
 
@@ -102,7 +102,7 @@ class Problem:
             turn_inside,
             limits.lower + LIMIT_SLACK,
             limits.upper - LIMIT_SLACK,
-            LONGEST_TWIST / self.hole.depth,
+            steepest_twist(self.settings, self.hole.depth),
             self.settings.psi_bound or 0.0,
         )
 

@@ -5,14 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 
-__all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "LONGEST_TWIST", "straight_motion", "target_spins"]
+__all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "LONGEST_TWIST", "steepest_twist", "straight_motion", "target_spins"]
 
 LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 GRID = 240  # spins at the target in one turn
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
 LEAST_RATE = float(np.deg2rad(1e-5))  # [rad/m] 1e-8 deg/mm: a joint that must not stop keeps at least so much
+
+
+def steepest_twist(settings: Settings, depth: float) -> float:
+    """The steepest slope of a straight leg [rad/m]: one turn of the tool; where legs are free, the cap on the twist.
+
+    Args:
+        settings: `legs`, and `max_twist`, which holds for free legs and so for straight ones among them.
+        depth: of the leg [m].
+    """
+    turn = LONGEST_TWIST / depth
+    return min(turn, settings.max_twist) if settings.legs == "free" else turn
 
 
 def target_spins(psi_bound: float | None, per_turn: int) -> Array:

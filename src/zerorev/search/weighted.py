@@ -10,7 +10,7 @@ The exact answers for the single criteria are candidates, too, so what comes out
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import get_args
@@ -28,7 +28,7 @@ from zerorev.motion import turns_within
 from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, straight_motion, target_spins
+from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 
 __all__ = ["search_weighted"]
 
@@ -41,7 +41,9 @@ GOLDEN = (np.sqrt(5) - 1) / 2
 ATTEMPTS = 4  # to make good what the points on a leg did not see
 
 
-def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
+def search_weighted(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, known: Sequence[Candidate] = ()
+) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the weighted sum.
 
     Args:
@@ -49,13 +51,15 @@ def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) ->
         tool: the drill.
         hole: what is drilled, as for the exact search.
         settings: with `weights`; without, the objective's one criterion is all that weighs.
+        known: motions of this hole that were found otherwise; the answer is no worse than any of them.
 
     Returns:
         the motion, or None where no branch can run any. Without reversals, all of the twist plane is looked over; where
         joints have to reverse, what is around the exact search's motions and makes the same joints reverse.
     """
-    singly = (search(robot, tool, hole, replace(settings, objective=word, weights=())) for word in get_args(Objective))
-    found = [one for one in singly if one is not None]
+    alone = (replace(settings, objective=word, weights=()) for word in get_args(Objective))
+    singly = (search(robot, tool, hole, one, known) for one in alone)
+    found = [*(one for one in singly if one is not None), *known]
     if not found:
         return None
     problem = _Problem(robot, tool, hole, settings)
@@ -63,7 +67,8 @@ def search_weighted(robot: Robot, tool: Tool, hole: Hole, settings: Settings) ->
     best = min(found, key=order.rank)
     if not best.keeps_threshold:
         return best  # the greatest margin comes first, and leaves nothing to weigh
-    seeds = [problem.point(one) for one in found if order.rank(one)[:2] == order.rank(best)[:2]]
+    straight = [one for one in found if one.profile.psi.size == 3]
+    seeds = [problem.point(one) for one in straight if order.rank(one)[:2] == order.rank(best)[:2]]
     if best.reversals == 0:
         seeds += problem.survey()
     points = [problem.zoomed(seed, settings.min_rate, fine=False) for seed in _apart(seeds)]
@@ -109,7 +114,7 @@ class _Problem(LegPairs):
         if not branches or not reached.any():
             return
         kappa, sense = kappa[reached], np.sign(theta_psi[reached, 2 * posture])
-        steepest = LONGEST_TWIST / self.hole.depth
+        steepest = steepest_twist(self.settings, self.hole.depth)
         # measured along each side, from the outermost critical rate outwards, close together at first
         nearest = np.stack([kappa.max(axis=1), -kappa.min(axis=1)], axis=1).ravel()
         share = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, SLOPES)])

@@ -1,0 +1,74 @@
+"""Random holes of every robot that ships, with random tools, thresholds and limits; a seed gives one hole."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from zerorev import kinematics
+from zerorev.model._arrays import rotation_rpy, transform
+from zerorev.model.files import read_robot, read_tool, robot_names
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = ["Drilled", "random_hole"]
+
+ROBOTS = [read_robot(name) for name in robot_names()]
+THESIS_DRILL = read_tool("thesis_drill")
+NARROWED = 0.4  # share of its range that a joint keeps where limits are narrowed
+
+
+@dataclass(frozen=True)
+class Drilled:
+    """A hole with all that drills it."""
+
+    robot: Robot
+    tool: Tool
+    hole: Hole
+    settings: Settings
+
+    @property
+    def all(self):
+        """Robot, tool, hole, settings."""
+        return self.robot, self.tool, self.hole, self.settings
+
+    def deep(self, depth):
+        """The same with another stroke [m]."""
+        return replace(self, hole=replace(self.hole, depth=depth))
+
+    def asking(self, **changes):
+        """The same with other settings."""
+        return replace(self, settings=replace(self.settings, **changes))
+
+
+def random_hole(seed, *, legs="straight", narrowed=False):
+    """A reachable place in any posture of a robot; half of the holes have the motion threshold off.
+
+    Args:
+        seed: of it.
+        legs: straight or free.
+        narrowed: whether each joint keeps only a share of its range, the posture within it.
+    """
+    rng = np.random.default_rng(seed)
+    robot = ROBOTS[seed % len(ROBOTS)]
+    size = (robot.arm.c2 + robot.arm.c3) / 0.7
+    while True:
+        tool = THESIS_DRILL
+        if rng.integers(2):
+            rotation = rotation_rpy(*rng.uniform(-np.pi, np.pi, 3))
+            tool = Tool("random", transform(rotation, size * rng.uniform([-0.2, -0.2, 0.05], [0.2, 0.2, 0.25])))
+        limits = robot.limits
+        joints = rng.uniform(limits.lower, limits.upper)
+        T = kinematics.forward(robot, joints) @ tool.T_flange_tcp
+        hole = Hole(f"random {seed}", T[:3, 3], -T[:3, 2], 0.01 * size, psi_zero=T[:3, 1])
+        if kinematics.wrist_offset(robot, tool) > 0.02 * size and hole.target[2] > 0:
+            break
+    if narrowed:
+        width = NARROWED * (limits.upper - limits.lower)
+        lower = np.clip(joints - width * rng.uniform(0.2, 0.8, 6), limits.lower, limits.upper - width)
+        robot = replace(robot, limits=replace(limits, lower=lower, upper=lower + width))
+    min_rate = float(np.deg2rad(10.0)) / size * (seed // len(ROBOTS) % 2)
+    return Drilled(robot, tool, hole, Settings(min_rate=min_rate, legs=legs))
