@@ -16,7 +16,7 @@ from zerorev.model.robot import ArmGeometry, JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import branch_of, posture_of, skeleton
 from zerorev.verify.certificate import certify_hole
-from zerorev.verify.measure import mean_rates, rates, reversals, travel
+from zerorev.verify.measure import mean_rates, reversals, travel
 from zerorev.verify.path import Track, follow, legs
 from zerorev.verify.sound import limit_distances
 
@@ -112,7 +112,7 @@ def honest(robot, tool, hole, profile, start, status="evaluated", samples=20_000
         reversals_per_joint=tuple(map(len, turned)),
         events=tuple(event(joint, i) for joint in range(6) for i in turned[joint]),
         travel=travel(track),
-        min_rate=rates(track).min(axis=0),
+        min_rate=track.moves.slowest,
         mean_rate=mean_rates(track),
         limit_distance=limit_distances(robot, track.joints).min(axis=0),
     )

@@ -15,7 +15,6 @@ from zerorev.verify.certificate import certify_hole, certify_motion
 from zerorev.verify.certificate_arm import Setting, body_at, posture_of, rates
 from zerorev.verify.certificate_legs import planned_motion
 from zerorev.verify.certificate_piece import ball_arithmetic
-from zerorev.verify.measure import rates as sampled_rates
 from zerorev.verify.measure import reversals
 from zerorev.verify.path import Track, follow, legs
 from zerorev.verify.sound import limit_distances
@@ -257,7 +256,7 @@ def test_random_plans_against_samples(robot, drill, random_hole, seed):
         if sum(found) or room.min() < 0:
             assert answer.verdict != "certified"
         if answer.verdict == "certified":
-            assert (answer.min_rate <= sampled_rates(track).min(axis=0) * (1 + 1e-6) + 1e-9).all()
+            assert (answer.min_rate <= track.moves.slowest * (1 + 1e-6) + 1e-9).all()
             assert (answer.limit_distance <= room + 1e-9).all()
         if answer.verdict == "refuted":
             assert sum(found) or room.min() < 0

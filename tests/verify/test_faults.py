@@ -9,8 +9,8 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Event
 from zerorev.model.profile import Profile
 from zerorev.verify import verify_hole
-from zerorev.verify.arm import Posture, posture_of, solve
-from zerorev.verify.path import _asked, _onto, legs
+from zerorev.verify.arm import Posture, posture_of
+from zerorev.verify.path import follow, legs
 
 
 @pytest.fixture
@@ -94,14 +94,9 @@ def test_a_wrong_turn(check, plan):
 def test_a_wrong_branch(check, kuka, drill, plan):
     said(check(motion(plan, branch=5)), "of branch 4, the plan says 5")
     # the other flip of the wrist reaches every pose too; only the number of the branch tells
-    path = legs(plan.motion.profile, 3)
-    tip, R = _asked(plan.hole, path)
-    T = drill.T_flange_tcp
-    R_base_flange = _onto(R, T[:3, :3].T)
-    posture = posture_of(kuka.arm, plan.motion.joints[:1])
-    flipped = solve(
-        kuka.arm, tip - _onto(R_base_flange, T[:3, 3:])[:, 0], R_base_flange, Posture(*posture[:2], -posture.flip)
-    )
+    path, start = legs(plan.motion.profile, 3), plan.motion.joints[0]
+    posture = posture_of(kuka.arm, start[None])
+    flipped = follow(kuka, drill, plan.hole, path, Posture(*posture[:2], -posture.flip), start)
     said(check(motion(plan, joints=flipped[list(path.knots)])), "of branch 5, the plan says 4")
 
 

@@ -21,9 +21,9 @@ from zerorev.verify.claims import (
     reversals_claimed,
     score_claimed,
 )
-from zerorev.verify.measure import reversals
-from zerorev.verify.path import Track, around, blend, follow, legs, residual, with_blend
-from zerorev.verify.sound import continuity, limit_distances, limits, on_the_axis, reach
+from zerorev.verify.measure import reversals, reversals_through
+from zerorev.verify.path import Track, around, blend, follow, joined, legs, residual
+from zerorev.verify.sound import continuity, greatest_step, least_room, limit_distances, limits, on_the_axis, reach
 
 __all__ = ["verify_hole", "verify_plan"]
 
@@ -87,12 +87,11 @@ def verify_hole(
         at_corner = k == motion.profile.corner
         where = "in the blended corner, " if at_corner else f"in the blend at breakpoint {k + 1}, "
         curve = blend(motion.profile, k, radius, blend_samples)
-        before, behind = around(asked, k, curve)
+        before, behind = around(track, k, curve)
         joints = follow(robot, tool, hole, curve, posture, track.joints[before])
-        cut, first, last = with_blend(track, Track(curve, joints), before, behind)
-        failures += blend_keeps(robot, where, turned, cut, reversals(cut))
-        # a sample of the legs on either side, so that the joints are also seen to be continuous into the blend
-        looked_at.append((where, cut.part(first - 1, last + 1)))
+        piece = joined(track, Track(curve, joints), before, behind)
+        failures += blend_keeps(robot, where, turned, reversals_through(track, turned, piece, before, behind))
+        looked_at.append((where, piece))
 
     figures = []
     for where, piece in looked_at:
@@ -104,8 +103,7 @@ def verify_hole(
             *limits(robot, piece),
         )
         failures += [where + failure for failure in checks]
-        steps, room = np.abs(np.diff(piece.joints, axis=0)), limit_distances(robot, piece.joints)
-        figures.append([_most(position), _most(rotation), _most(steps), -_most(-room)])
+        figures.append([_most(position), _most(rotation), greatest_step(piece), _least_room(robot, piece)])
     position_error, rotation_error, step, short_room = zip(*figures, strict=True)
     return Verification(
         passed=not failures,
@@ -127,6 +125,15 @@ def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:
     return [(k, radius) for k, radius in radii if radius > 0]
 
 
+def _least_room(robot: Robot, track: Track) -> float:
+    """Least distance of a joint to its limits [rad] over the samples that are in reach."""
+    room = least_room(robot, track)
+    if np.isnan(room).any():
+        room = limit_distances(robot, track.joints)
+    return -_most(-room)
+
+
 def _most(values: Array) -> float:
     """The greatest value that is not NaN; NaN where there is none."""
-    return float(np.fmax.reduce(values, axis=None))
+    most = values.max()
+    return float(np.fmax.reduce(values, axis=None) if np.isnan(most) else most)

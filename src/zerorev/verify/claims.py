@@ -13,9 +13,9 @@ from zerorev.model.plan import HolePlan, Motion, Score
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import branch_of
-from zerorev.verify.measure import Reversals, mean_rates, rates, travel
+from zerorev.verify.measure import Reversals, mean_rates, slowest_at, travel
 from zerorev.verify.path import Track
-from zerorev.verify.sound import limit_distances
+from zerorev.verify.sound import least_room, nearest_to_limit
 
 __all__ = ["as_asked", "blend_keeps", "complete", "joints_stated", "reversals_claimed", "score_claimed"]
 
@@ -107,19 +107,18 @@ def reversals_claimed(robot: Robot, score: Score, track: Track, turned: Reversal
             yield f"{name} has {events[joint + 1]} reversals listed as events, the plan claims {claimed}"
 
 
-def blend_keeps(robot: Robot, where: str, turned: Reversals, cut: Track, turned_cut: Reversals) -> Iterator[str]:
+def blend_keeps(robot: Robot, where: str, turned: Reversals, blended: list[list[str]]) -> Iterator[str]:
     """Blending a breakpoint must not make a joint reverse more often.
 
     Args:
         robot: the arm.
         where: which blend, for a message.
         turned: reversals of both legs up to the corner.
-        cut: the motion with that breakpoint blended.
-        turned_cut: reversals of that.
+        blended: where each joint reverses with that breakpoint blended, in words.
     """
-    for name, sharp, blunt in zip(robot.joint_names, turned, turned_cut, strict=True):
+    for name, sharp, blunt in zip(robot.joint_names, turned, blended, strict=True):
         if len(blunt) > len(sharp):
-            places = "; ".join(cut.path.place(i) for i in blunt[:3])
+            places = "; ".join(blunt[:3])
             yield f"{where}{name} reverses: {_times(len(blunt))} in all ({places}), {len(sharp)} without the blend"
 
 
@@ -132,22 +131,21 @@ def score_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -
     moved = travel(track)
     if abs(moved - score.travel) > TRAVEL_TOLERANCE * max(moved, 1e-3):
         yield f"the joints travel {np.rad2deg(moved):.6f} deg, the plan claims {np.rad2deg(score.travel):.6f}"
-    speed, mean = rates(track), mean_rates(track)
-    slowest = speed.min(axis=0)
+    slowest, mean = track.moves.slowest, mean_rates(track)
     for joint, name in enumerate(robot.joint_names):
         claimed = score.min_rate[joint]
         if set(turned[joint]) <= {track.path.corner} and _overstated(claimed, slowest[joint]):
-            place = track.path.place(int(speed[:, joint].argmin()))
+            place = track.path.place(slowest_at(track, joint))
             yield f"{name} has a least rate of {_rate(slowest[joint])} {place}, the plan claims {_rate(claimed)}"
         claimed = score.mean_rate[joint]
         if _overstated(claimed, mean[joint]):
             yield f"{name} has a mean rate of {_rate(mean[joint])} on a leg, the plan claims {_rate(claimed)}"
-    room = limit_distances(robot, track.joints)
+    room = least_room(robot, track)
     for joint, name in enumerate(robot.joint_names):
-        nearest, stated = int(room[:, joint].argmin()), score.limit_distance[joint]
-        if stated > room[nearest, joint] + JOINT_TOLERANCE:
-            place = track.path.place(nearest)
-            yield f"{name} comes within {_deg(room[nearest, joint])} of a limit {place}, the plan claims {_deg(stated)}"
+        stated = score.limit_distance[joint]
+        if stated > room[joint] + JOINT_TOLERANCE:
+            place = track.path.place(nearest_to_limit(robot, track, joint))
+            yield f"{name} comes within {_deg(room[joint])} of a limit {place}, the plan claims {_deg(stated)}"
 
 
 def _overstated(claimed: float, measured: float) -> bool:

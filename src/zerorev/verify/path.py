@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +13,9 @@ from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.verify.arm import Posture, skeleton, solve, with_turns
+from zerorev.verify.arm import Posture, blocks, cos_sin, hand, solve, with_turns
 
-__all__ = ["Path", "Track", "around", "blend", "follow", "legs", "residual", "with_blend"]
+__all__ = ["Path", "Track", "around", "blend", "follow", "joined", "legs", "residual"]
 
 # a segment gets so many steps however short it is: a narrow kink must not hide between samples
 LEAST_STEPS = 16
@@ -26,7 +28,7 @@ class Path(NamedTuple):
         standoff: [m], shape (N,).
         psi: [rad], shape (N,).
         knots: indices of the profile's breakpoints, shape (n,).
-        corner: index of the sample at which the plunge ends.
+        corner: index of the sample at which the plunge ends; -1 where all lie behind it, N where all lie before it.
     """
 
     standoff: Array
@@ -40,7 +42,26 @@ class Path(NamedTuple):
         return f"{leg}, stand-off {round(self.standoff[index] * 1e3, 4) + 0.0:g} mm"
 
 
-class Track(NamedTuple):
+class Moves(NamedTuple):
+    """What the joints do from sample to sample, shape (6,) each; NaN for a joint that is NaN at any sample.
+
+    Attributes:
+        least: the step farthest backwards [rad], or the shortest one forwards.
+        most: the step farthest forwards [rad], or the shortest one backwards.
+        plunge: angle moved before the corner [rad].
+        retract: angle moved behind it [rad].
+        slowest: least |d theta / d path| between two samples [rad/m].
+    """
+
+    least: Array
+    most: Array
+    plunge: Array
+    retract: Array
+    slowest: Array
+
+
+@dataclass(frozen=True)
+class Track:
     """A path and the joints that follow it.
 
     Attributes:
@@ -51,11 +72,34 @@ class Track(NamedTuple):
     path: Path
     joints: Array
 
-    def part(self, first: int, last: int) -> Track:
-        """The samples first to last, both included."""
-        path, there = self.path, slice(first, last + 1)
-        piece = Path(path.standoff[there], path.psi[there], (), path.corner - first)
-        return Track(piece, self.joints[there])
+    @cached_property
+    def moves(self) -> Moves:
+        """What the joints do from sample to sample: a joint after the other, which takes little memory at a time."""
+        found, corner = np.empty((5, 6)), self.path.corner
+        with np.errstate(invalid="ignore", divide="ignore"):
+            for joint in range(6):
+                steps = np.diff(self.joints[:, joint])
+                found[:2, joint] = steps.min(), steps.max()
+                np.abs(steps, out=steps)
+                found[2:4, joint] = steps[:corner].sum(), steps[corner:].sum()
+                steps /= self.path_steps
+                found[4, joint] = steps.min()
+        return Moves(*found)
+
+    @cached_property
+    def path_steps(self) -> Array:
+        """Path distance between neighbouring samples [m], shape (N - 1,)."""
+        return np.abs(np.diff(self.path.standoff))
+
+    @cached_property
+    def distance(self) -> Array:
+        """Path distance [m] of the samples from the first, shape (N,)."""
+        return np.concatenate([[0.0], np.cumsum(self.path_steps)])
+
+    @cached_property
+    def extents(self) -> tuple[Array, Array]:
+        """Least and greatest angle of each joint [rad], shape (6,) each; NaN where any sample of it is."""
+        return self.joints.min(axis=0), self.joints.max(axis=0)
 
 
 def legs(profile: Profile, samples: int) -> Path:
@@ -100,39 +144,36 @@ def blend(profile: Profile, k: int, radius: float, samples: int) -> Path:
     return Path(standoff, psi, (), corner)
 
 
-def around(path: Path, k: int, curve: Path) -> tuple[int, int]:
+def around(track: Track, k: int, curve: Path) -> tuple[int, int]:
     """The samples of the legs between which a blend at breakpoint k lies: the last before it, the first behind it."""
-    distance = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path.standoff)))])
-    knot = path.knots[k]
-    radius = abs(curve.standoff[0] - path.standoff[knot]) + 1e-12  # [m]: a sample at the very end is the blend's own
-    before = np.flatnonzero(distance < distance[knot] - radius)[-1]
-    behind = np.flatnonzero(distance > distance[knot] + radius)[0]
-    return int(before), int(behind)
+    at = track.path.knots[k]
+    radius = (
+        abs(curve.standoff[0] - track.path.standoff[at]) + 1e-12
+    )  # [m]: a sample at the very end is the blend's own
+    low, high = track.distance[at] - radius, track.distance[at] + radius
+    return int(np.searchsorted(track.distance, low)) - 1, int(np.searchsorted(track.distance, high, "right"))
 
 
-def with_blend(track: Track, curve: Track, before: int, behind: int) -> tuple[Track, int, int]:
-    """A track in which the samples between two are replaced by a blend.
+def joined(track: Track, curve: Track, before: int, behind: int) -> Track:
+    """A blend with a sample of the legs on either side, so that the joints are also seen to run into it.
 
     Args:
-        track: both legs, N samples.
+        track: both legs.
         curve: the blend, M samples.
-        before: the last sample of the legs that is kept before the blend.
-        behind: the first that is kept behind it.
+        before: the last sample of the legs before the blend.
+        behind: the first behind it.
 
     Returns:
-        The blended track, and the indices in it of the blend's first and last sample.
+        M + 2 samples.
     """
 
     def join(legs: Array, cut: Array) -> Array:
-        return np.concatenate([legs[: before + 1], cut, legs[behind:]])
+        return np.concatenate([legs[..., before : before + 1], cut, legs[..., behind : behind + 1]], axis=-1)
 
-    added, corner = curve.path.standoff.size, track.path.corner
-    if before < corner < behind:
-        corner = before + 1 + curve.path.corner
-    elif corner >= behind:
-        corner += added - (behind - before - 1)
-    whole = Path(join(track.path.standoff, curve.path.standoff), join(track.path.psi, curve.path.psi), (), corner)
-    return Track(whole, join(track.joints, curve.joints)), before + 1, before + added
+    legs, cut = track.path, curve.path
+    corner = cut.corner + (cut.corner >= 0) + (cut.corner >= cut.psi.size)
+    path = Path(join(legs.standoff, cut.standoff), join(legs.psi, cut.psi), (), corner)
+    return Track(path, join(track.joints.T, curve.joints.T).T)
 
 
 def follow(robot: Robot, tool: Tool, hole: Hole, path: Path, posture: Posture, start: Array) -> Array:
@@ -149,11 +190,11 @@ def follow(robot: Robot, tool: Tool, hole: Hole, path: Path, posture: Posture, s
     Returns:
         Controller angles [rad], shape (N, 6); NaN out of reach.
     """
-    tip, R_base_tcp = _asked(hole, path)
-    T = tool.T_flange_tcp
-    R_base_flange = _onto(R_base_tcp, T[:3, :3].T)
-    flange = tip - _onto(R_base_flange, T[:3, 3:])[:, 0]
-    return with_turns(solve(robot.arm, flange, R_base_flange, posture), start)
+    wanted = _flange(robot, tool, _asked(hole))
+    q = np.empty((6, path.psi.size))
+    for block in blocks(path.psi.size):
+        q[:, block] = solve(robot.arm, wanted @ _along(path, block), posture).T
+    return with_turns(q.T, start)
 
 
 def residual(robot: Robot, tool: Tool, hole: Hole, path: Path, joints: Array) -> tuple[Array, Array]:
@@ -169,27 +210,45 @@ def residual(robot: Robot, tool: Tool, hole: Hole, path: Path, joints: Array) ->
     Returns:
         Distance between the tips [m] and angle between the tools [rad], each of shape (N,).
     """
-    tip, R_asked = _asked(hole, path)
-    body = skeleton(robot.arm, joints)
+    # what the tool is off by is a sum of what the arm gives (4 vectors) and of what the path asks for (4 numbers)
     T = tool.T_flange_tcp
-    R = _onto(body.R_base_flange, T[:3, :3])
-    reached = body.flange + _onto(body.R_base_flange, T[:3, 3:])[:, 0]
+    reached = np.zeros((4, 4))
+    reached[:3, :3], reached[3, :3], reached[3, 3] = T[:3, :3].T, T[:3, 3] + [0, 0, robot.arm.c4], 1.0
+    asked = _asked(hole)
+    off2, chord2 = np.empty(path.psi.size), np.empty(path.psi.size)
+    for block in blocks(path.psi.size):
+        body = hand(robot.arm, joints[block])
+        off = (reached @ body.reshape(4, -1)).reshape(body.shape)
+        off -= asked @ _along(path, block)
+        off *= off
+        np.sum(off[3], axis=0, out=off2[block])
+        np.sum(off[:3].reshape(9, -1), axis=0, out=chord2[block])
     # |R - R'| (Frobenius) = 2 sqrt(2) sin(angle / 2): exact for small angles, where an arccos of the trace is not
-    chord = np.sqrt(((R - R_asked) ** 2).sum(axis=(0, 1)) / 8)
-    return np.sqrt(((reached - tip) ** 2).sum(axis=0)), 2 * np.arcsin(np.minimum(chord, 1.0))
+    return np.sqrt(off2), 2 * np.arcsin(np.minimum(np.sqrt(chord2 / 8), 1.0))
 
 
-def _onto(R: Array, M: Array) -> Array:
-    """The product of rotations (3, 3, N), samples last, with one matrix (3, m): shape (3, m, N)."""
-    return M.T @ R
+def _asked(hole: Hole) -> Array:
+    """The tool in the twist plane, shape (4, 3, 4): its axes x, y, z and its tip [m] as sums over `_along`.
+
+    The tool's Z is -direction; its Y is psi_zero turned by psi about Z.
+    """
+    z, y = -hole.direction, hole.psi_zero
+    x, none = np.cross(y, z), np.zeros(3)
+    axes = [(none, none, x, y), (none, none, y, -x), (z, none, none, none)]
+    return np.array([np.transpose(each) for each in (*axes, (hole.target, z, none, none))])
 
 
-def _asked(hole: Hole, path: Path) -> tuple[Array, Array]:
-    """Tip [m], shape (3, N), and rotation of the tool, shape (3, 3, N): Z = -direction, Y = psi_zero turned by psi."""
-    z = -hole.direction[:, None]
-    y0 = hole.psi_zero[:, None]
-    x0 = np.cross(hole.psi_zero, -hole.direction)[:, None]
-    c, s = np.cos(path.psi), np.sin(path.psi)
-    x, y = c * x0 + s * y0, c * y0 - s * x0
-    tip = hole.target[:, None] - path.standoff * hole.direction[:, None]
-    return tip, np.stack([x, y, np.broadcast_to(z, x.shape)], axis=1)
+def _flange(robot: Robot, tool: Tool, asked: Array) -> Array:
+    """The axes of the flange and the wrist centre, as `_asked` has the tool's axes and its tip, shape (4, 3, 4)."""
+    T = tool.T_flange_tcp
+    axes = np.tensordot(T[:3, :3], asked[:3], axes=1)
+    wrist = asked[3] - np.tensordot(T[:3, 3] + [0, 0, robot.arm.c4], axes, axes=1)
+    return np.concatenate([axes, wrist[None]])
+
+
+def _along(path: Path, part: slice) -> Array:
+    """What places and axes of the tool depend on: 1, stand-off [m], cos psi, sin psi; shape (4, N)."""
+    at = np.empty((4, path.psi[part].size))
+    at[0], at[1] = 1.0, path.standoff[part]
+    at[2], at[3] = cos_sin(path.psi[part])
+    return at

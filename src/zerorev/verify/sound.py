@@ -10,7 +10,16 @@ from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.verify.path import Track
 
-__all__ = ["continuity", "limit_distances", "limits", "on_the_axis", "reach"]
+__all__ = [
+    "continuity",
+    "greatest_step",
+    "least_room",
+    "limit_distances",
+    "limits",
+    "nearest_to_limit",
+    "on_the_axis",
+    "reach",
+]
 
 POSITION_TOLERANCE = 1e-8  # [m]
 ROTATION_TOLERANCE = 1e-8  # [rad]
@@ -25,9 +34,10 @@ GREATEST_GAIN = 100.0  # [rad per rad of spin]
 
 def reach(track: Track) -> Iterator[str]:
     """Every sample must have joint angles."""
+    if np.isfinite(track.extents).all():
+        return
     lost = np.flatnonzero(~np.isfinite(track.joints).all(axis=1))
-    if lost.size:
-        yield f"out of reach or singular at {lost.size} samples, first {track.path.place(int(lost[0]))}"
+    yield f"out of reach or singular at {lost.size} samples, first {track.path.place(int(lost[0]))}"
 
 
 def on_the_axis(track: Track, position: Array, rotation: Array) -> Iterator[str]:
@@ -42,6 +52,8 @@ def on_the_axis(track: Track, position: Array, rotation: Array) -> Iterator[str]
         (position, POSITION_TOLERANCE, 1e3, "mm", "the tip is"),
         (rotation, ROTATION_TOLERANCE, np.rad2deg(1.0), "deg", "the tool is turned"),
     ):
+        if error.max() <= tolerance:  # not where any is NaN
+            continue
         worst = _greatest(error)
         if error[worst] > tolerance:
             yield f"{what} {error[worst] * scale:.3g} {unit} off what is asked {track.path.place(worst)}"
@@ -49,31 +61,54 @@ def on_the_axis(track: Track, position: Array, rotation: Array) -> Iterator[str]
 
 def continuity(robot: Robot, track: Track) -> Iterator[str]:
     """No joint may jump from one sample to the next."""
-    steps = np.abs(np.diff(track.joints, axis=0))
-    path = np.abs(np.diff(track.path.standoff))
+    if greatest_step(track) <= LEAST_JUMP and np.isfinite(track.extents).all():
+        return
+    path = track.path_steps
     bound = LEAST_JUMP + GREATEST_RATE * path + GREATEST_GAIN * np.abs(np.diff(track.path.psi))
     for joint, name in enumerate(robot.joint_names):
-        worst = _greatest(steps[:, joint] - bound)
-        if steps[worst, joint] > bound[worst]:
+        steps = np.abs(np.diff(track.joints[:, joint]))
+        worst = _greatest(steps - bound)
+        if steps[worst] > bound[worst]:
             yield (
-                f"{name} jumps by {np.rad2deg(steps[worst, joint]):.4g} deg within {path[worst] * 1e3:.3g} mm "
+                f"{name} jumps by {np.rad2deg(steps[worst]):.4g} deg within {path[worst] * 1e3:.3g} mm "
                 f"{track.path.place(worst)}"
             )
 
 
+def greatest_step(track: Track) -> float:
+    """Greatest step of a joint between two samples that are in reach [rad]."""
+    most = np.max([track.moves.most, -track.moves.least])
+    return float(np.fmax.reduce(np.abs(np.diff(track.joints, axis=0)), axis=None) if np.isnan(most) else most)
+
+
 def limit_distances(robot: Robot, joints: Array) -> Array:
-    """Distance of joints, shape (N, 6), to the nearer limit [rad], shape (N, 6); negative beyond it."""
+    """Distance of joints, shape (..., 6), to the nearer limit [rad], shape (..., 6); negative beyond it."""
     return np.minimum(joints - robot.limits.lower, robot.limits.upper - joints)
+
+
+def least_room(robot: Robot, track: Track) -> Array:
+    """Least distance of each joint to its limits [rad], shape (6,); negative beyond them, NaN where any sample is."""
+    low, high = track.extents
+    return np.minimum(low - robot.limits.lower, robot.limits.upper - high)
+
+
+def nearest_to_limit(robot: Robot, track: Track, joint: int) -> int:
+    """The sample at which a joint (0 to 5) comes nearest to one of its limits, or goes farthest beyond."""
+    limits, angles = robot.limits, track.joints[:, joint]
+    return _greatest(-np.minimum(angles - limits.lower[joint], limits.upper[joint] - angles))
 
 
 def limits(robot: Robot, track: Track) -> Iterator[str]:
     """Every sample must be within the joint limits."""
-    room = limit_distances(robot, track.joints)
+    room = least_room(robot, track)
     for joint, name in enumerate(robot.joint_names):
-        worst = _greatest(-room[:, joint])
-        if room[worst, joint] < -LIMIT_TOLERANCE:
+        if room[joint] >= -LIMIT_TOLERANCE:
+            continue
+        worst = nearest_to_limit(robot, track, joint)
+        beyond = -limit_distances(robot, track.joints[worst])[joint]
+        if beyond > LIMIT_TOLERANCE:
             yield (
-                f"{name} at {np.rad2deg(track.joints[worst, joint]):.4f} deg is {np.rad2deg(-room[worst, joint]):.3g} "
+                f"{name} at {np.rad2deg(track.joints[worst, joint]):.4f} deg is {np.rad2deg(beyond):.3g} "
                 f"deg beyond its limits ({np.rad2deg(robot.limits.lower[joint]):g} to "
                 f"{np.rad2deg(robot.limits.upper[joint]):g} deg) {track.path.place(worst)}"
             )
