@@ -32,6 +32,15 @@ def pytest_terminal_summary(terminalreporter):
             terminalreporter.write_line(text)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def checked_files(tmp_path_factory):
+    """The folder in which it is kept which plan files were checked: never the user's own."""
+    folder = tmp_path_factory.mktemp("cache") / "checked"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("zerorev.model.checked_files._folder", lambda: folder)
+        yield folder
+
+
 @pytest.fixture(scope="session")
 def robot():
     """KR 6 R700-2, the thesis' robot."""

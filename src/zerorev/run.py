@@ -8,10 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from zerorev.jobs import answers, unanswered, workers_for
+from zerorev.model.checked_files import remember
 from zerorev.model.files import plan_to_json
 from zerorev.model.job import Job
 from zerorev.model.part import Part
 from zerorev.model.plan import HolePlan, Plan, Strokes
+from zerorev.model.text import read_text
 from zerorev.report import terminal
 from zerorev.report.answer import Shown
 
@@ -42,9 +44,12 @@ def run(
     shown, kept = Shown(head), list[HolePlan]()
     with nullcontext() if output is None else Part(output, head, job.holes) as part:
         keep = figures is not None or (json and output is None)
+        anew = part is not None and part.done == 0
         _answer(job, strokes, processes, part, (shown.add, kept.append) if keep else (shown.add,))
         if part is not None:
             part.finish()
+    if output is not None and anew:  # what was kept from another run was not checked by this one
+        remember(read_text(output, "the plan file that was just written"))
     whole = replace(head, holes=tuple(kept))
     if figures is not None:
         _draw(whole, figures)

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = ["check", "export"]
 
+PLAN_FILE = "a plan file (JSON)"
+
 
 @app.command
 def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, json: bool = False) -> int:
@@ -28,8 +30,10 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
             of each hole of the program.
     """
-    from zerorev.model.files import plan_to_json, read_plan, write_plan
+    from zerorev.model.checked_files import remember
+    from zerorev.model.files import plan_from_text, plan_to_json, write_plan
     from zerorev.model.output import check_file
+    from zerorev.model.text import read_text
 
     if program is not None and not certify:
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
@@ -37,7 +41,8 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
         need("flint", "python-flint", "--certify", "certify")
     if certify and program is None:
         check_file(plan)
-    answer = read_plan(plan)
+    text = read_text(plan, PLAN_FILE)
+    stated = answer = plan_from_text(text, str(plan))
     if program is not None:
         from zerorev.program.read_back import read_program
 
@@ -47,6 +52,8 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
 
     with terminal.busy("checking"):
         answer = verify_plan(answer)
+    if _passed(stated) <= _passed(answer):
+        remember(text)
     if program is not None:
         from zerorev.program.as_exported import as_exported
         from zerorev.verify.certificate_program import certify_program
@@ -60,6 +67,7 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
         with terminal.busy("proving"):
             answer = certify_plan(answer)
         write_plan(answer, plan)
+        remember(read_text(plan, PLAN_FILE))
     if json and program is not None:
         terminal.print_json(_proofs(plan_to_json(answer), written.name))
     elif json:
@@ -77,17 +85,26 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
 def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
     """Write a plan as a robot program, after a last look at its speeds, turns and poses.
 
+    A plan file that plan or check has checked on this machine is not checked again, as long as it is unchanged.
+
     Args:
         plan: The plan file (JSON).
         controller: The robot's controller: krl (KUKA).
         output: The program's file; by default beside the plan, called as the plan is.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
     """
-    from zerorev.model.files import read_plan
+    from zerorev.model.checked_files import is_checked
+    from zerorev.model.files import plan_from_text
     from zerorev.model.output import write_text
+    from zerorev.model.text import read_text
 
     check_outputs((output,), plan)
-    answer = read_plan(plan)
+    text = read_text(plan, PLAN_FILE)
+    answer = plan_from_text(text, str(plan))
+    if is_checked(text):
+        from zerorev.verify.check import known_as_checked
+
+        answer = known_as_checked(answer)
 
     from zerorev.jobs import workers_for
     from zerorev.program.export import export as to_program
@@ -103,6 +120,11 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
     if target.name != program.name + program.suffix:
         terminal.note(f"the controller wants this file called {program.name}{program.suffix}")
     return FINE
+
+
+def _passed(plan: Plan) -> set[str]:
+    """Ids of the holes that are said to have passed the check."""
+    return {hole.hole.id for hole in plan.holes if hole.verified is not None and hole.verified.passed}
 
 
 def _verdict(answer: Plan, *, certify: bool = False) -> int:

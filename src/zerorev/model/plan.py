@@ -162,6 +162,8 @@ class Verification:
         max_joint_step: greatest joint step between neighbouring samples [rad].
         min_limit_distance: least distance to a joint limit [rad].
         failures: one sentence a failed check; empty where passed.
+        subject: fingerprint of what was examined (`zerorev.verify.check.subject`); None where that is not known, as of
+            what a plan file says.
     """
 
     passed: bool
@@ -173,6 +175,7 @@ class Verification:
     max_joint_step: float
     min_limit_distance: float
     failures: tuple[str, ...] = ()
+    subject: str | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

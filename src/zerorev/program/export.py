@@ -12,7 +12,7 @@ from zerorev.program.krl import refuse_other_makers, to_krl
 from zerorev.program.krl_text import identifier
 from zerorev.program.neutral import Program, build_program
 from zerorev.program.preflight import preflight
-from zerorev.verify.check import verify_hole
+from zerorev.verify.check import subject, verify_hole
 from zerorev.workers import Workers
 
 __all__ = ["CONTROLLERS", "Controller", "Exported", "export", "exporting"]
@@ -72,7 +72,8 @@ def export(
 ) -> Exported:
     """Write a verified plan as a robot program.
 
-    What the plan says of its own verification is not taken on trust: every hole is checked once more.
+    What the plan says of its own verification is not taken on trust: a hole that was not checked just as it is here, in
+    this process or one of its workers, is checked once more.
 
     Args:
         plan: what to run.
@@ -115,7 +116,7 @@ def exporting(
         raise InputError(f"unknown controller '{controller}'", where="controller", accepted=", ".join(CONTROLLERS))
     dialect = CONTROLLERS[controller]
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
-    verified = yield from _verified_anew(plan, workers)
+    verified = yield from _verified(plan, workers)
     program = build_program(verified, skip_failed=skip_failed)
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
@@ -124,19 +125,25 @@ def exporting(
     return Exported(dialect.write(program, called, findings, version), findings, called, dialect.suffix)
 
 
-def _verified_anew(plan: Plan, workers: int) -> Generator[None, None, Plan]:
-    """The plan with each hole that passed its check held to it again; a plan file may have been altered since."""
+def _verified(plan: Plan, workers: int) -> Generator[None, None, Plan]:
+    """The plan with each hole that passed its check held to it again, unless this very hole was checked before.
+
+    A plan file may have been altered since; a hole that was replaced in memory has another fingerprint.
+    """
     holes = []
     with Workers(partial(verify_hole, plan.robot, plan.tool, plan.settings), workers) as checkers:
-        outcomes = checkers.map(hole for hole in plan.holes if _passed(hole))
+        outcomes = checkers.map(hole for hole in plan.holes if _is_open(plan, hole))
         for hole in plan.holes:
-            holes.append(replace(hole, verified=next(outcomes)) if _passed(hole) else hole)
+            holes.append(replace(hole, verified=next(outcomes)) if _is_open(plan, hole) else hole)
             yield
     return replace(plan, holes=tuple(holes))
 
 
-def _passed(hole: HolePlan) -> bool:
-    return hole.verified is not None and hole.verified.passed
+def _is_open(plan: Plan, hole: HolePlan) -> bool:
+    """Whether a hole is said to have passed, but not known to."""
+    if hole.verified is None or not hole.verified.passed:
+        return False
+    return hole.verified.subject != subject(plan.robot, plan.tool, plan.settings, hole)
 
 
 def _sentence(finding: Finding) -> str:

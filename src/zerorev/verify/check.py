@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.fingerprint import fingerprint
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Verification
 from zerorev.model.profile import Profile
@@ -25,7 +26,9 @@ from zerorev.verify.measure import reversals, reversals_through
 from zerorev.verify.path import Track, around, blend, follow, joined, legs, residual
 from zerorev.verify.sound import continuity, greatest_step, least_room, limit_distances, limits, on_the_axis, reach
 
-__all__ = ["verify_hole", "verify_plan"]
+__all__ = ["known_as_checked", "subject", "verify_hole", "verify_plan"]
+
+SAMPLES, BLEND_SAMPLES = USUAL = 40_000, 4_000  # on the two legs, on each blend
 
 
 def verify_plan(plan: Plan) -> Plan:
@@ -47,8 +50,8 @@ def verify_hole(
     settings: Settings,
     hole_plan: HolePlan,
     *,
-    samples: int = 40_000,
-    blend_samples: int = 4_000,
+    samples: int = SAMPLES,
+    blend_samples: int = BLEND_SAMPLES,
 ) -> Verification:
     """Prove or refute what a plan claims of one hole, from the model alone.
 
@@ -115,7 +118,36 @@ def verify_hole(
         max_joint_step=max(step),
         min_limit_distance=min(short_room),
         failures=tuple(failures),
+        subject=subject(robot, tool, settings, hole_plan) if (samples, blend_samples) == USUAL else None,
     )
+
+
+def known_as_checked(plan: Plan) -> Plan:
+    """The plan, taken as it says of its own checks; for a caller who knows that they were made of what stands in it.
+
+    Args:
+        plan: as read from a file that is known (`zerorev.model.checked_files`).
+    """
+    holes = (
+        hole
+        if hole.verified is None
+        else replace(hole, verified=replace(hole.verified, subject=subject(plan.robot, plan.tool, plan.settings, hole)))
+        for hole in plan.holes
+    )
+    return replace(plan, holes=tuple(holes))
+
+
+def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> str:
+    """Fingerprint of what the program of a hole is made of: of equal ones the check finds the same.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        settings: as planned.
+        hole_plan: the hole, its motion and what is claimed of that.
+    """
+    own = hole_plan
+    return fingerprint(robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset)
 
 
 def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:
