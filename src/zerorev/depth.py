@@ -138,7 +138,7 @@ class _Search:
         self.robot, self.tool, self.hole = robot, tool, hole
         self.plane = twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
-        self.stretched = float(robot.arm.c2 + np.hypot(robot.arm.a2, robot.arm.c3))
+        self.stretched = robot.reach
         self.min_rate = max(settings.min_rate, LEAST_RATE)
         self.psi_bound = settings.psi_bound
         self.psi = target_spins(settings.psi_bound, GRID)

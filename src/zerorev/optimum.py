@@ -27,8 +27,9 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import LEAST_RATE
 from zerorev.search.weighted import search_weighted
 
-__all__ = ["Optimum", "best_motion", "deepest_as_drilled", "optimum"]
+__all__ = ["LEAST_STROKE", "Optimum", "best_motion", "deepest_as_drilled", "optimum", "too_short"]
 
+LEAST_STROKE = 1e-7  # of the reach: in a shorter one the joints move by little more than the rounding of an angle
 SAME_PLACE = 1e-9  # [m]
 SAME_RATE = 1e-6  # relative: by so much the slowest joint may be below the motion threshold and still keep it
 
@@ -83,6 +84,11 @@ def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings)
     return pool.as_drilled(pool.raised(pool.order.best(best)))
 
 
+def too_short(robot: Robot, hole: Hole) -> bool:
+    """Whether a stroke is too short for a motion whose figures mean anything."""
+    return hole.depth < LEAST_STROKE * robot.reach
+
+
 class _Pool:
     """The candidates of one hole, all of them for the hole down to the programmed corner."""
 
@@ -128,6 +134,8 @@ class _Pool:
 
     def best(self) -> Candidate | None:
         """The best of the pool."""
+        if too_short(self.robot, self.hole):
+            return None
         cut, order = self.cut(), self.order
         known = [one for one in (cut, self.free) if one is not None]
         straight = search_weighted if self.settings.weights else search

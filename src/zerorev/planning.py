@@ -19,7 +19,7 @@ from zerorev.model.plan import Baseline, Finding, HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.optimum import deepest_as_drilled, optimum
+from zerorev.optimum import LEAST_STROKE, deepest_as_drilled, optimum, too_short
 from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
@@ -44,6 +44,8 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
     settings = settings or Settings()
+    if too_short(robot, hole):
+        return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
         found = optimum(robot, tool, hole, settings)
         answer = _answered(robot, tool, hole, settings, "planned", found.motion)
@@ -203,6 +205,13 @@ def _why_infeasible(robot: Robot, tool: Tool, hole: Hole, settings: Settings) ->
     where = ", ".join(f"{value:.1f}" for value in hole.target * 1e3)
     message = f"out of reach: no branch and spin brings the tool along the axis at ({where}) mm"
     return (Finding("error", "unreachable", message, hole.id),)
+
+
+def _why_too_short(robot: Robot, hole: Hole) -> Finding:
+    """That a stroke is too short for figures that mean anything."""
+    least = np.format_float_positional(LEAST_STROKE * robot.reach * 1e3, 2, fractional=False)
+    message = f"a depth of {hole.depth * 1e3:g} mm is too short: on this arm it takes {least} mm or more to be checked"
+    return Finding("error", "depth", message, hole.id)
 
 
 def _why_none(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:

@@ -39,10 +39,13 @@ def unit(value: npt.ArrayLike, name: str) -> Array:
         InputError: not three finite numbers, or all of them zero.
     """
     vector = finite(value, (3,), name)
-    length = float(np.linalg.norm(vector))
-    if length < 1e-12:
+    greatest = float(np.abs(vector).max())
+    if greatest == 0:
         raise InputError("the zero vector has no direction", where=name, accepted="a vector of any length above 0")
-    return vector if abs(length - 1) < UNIT_TOLERANCE else vector / length
+    # by a power of two, which changes no digit, so that no square is too great or too small for a number
+    near_one = np.ldexp(vector, -int(np.frexp(greatest)[1]))
+    length = float(np.linalg.norm(vector)) if greatest < 2 else np.inf
+    return vector if abs(length - 1) < UNIT_TOLERANCE else near_one / float(np.linalg.norm(near_one))
 
 
 def rotation_rpy(roll: float, pitch: float, yaw: float) -> Array:

@@ -89,12 +89,12 @@ def psi_zero_vector(
 
 
 def _perpendicular(vector: Array, direction: Array, where: str, name: str = "psi reference") -> Array:
-    given = finite(vector, (3,), f"{where}, {name}")
+    given = unit(vector, f"{where}, {name}")
     across = given - (given @ direction) * direction
     length = float(np.linalg.norm(across))
     if abs(given @ direction) < UNIT_TOLERANCE and abs(length - 1) < UNIT_TOLERANCE:
         return given  # of a plan file: to stay as it is, digit for digit
-    if length < 1e-6 * max(1.0, float(np.linalg.norm(vector))):
+    if length < 1e-6:
         raise InputError(
             f"{name} is parallel to the drill axis, so it cannot count the spin",
             where=where,

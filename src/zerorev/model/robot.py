@@ -83,6 +83,11 @@ class Robot:
     second_sources: tuple[str, ...] = field(default=(), compare=False)
     caveats: tuple[str, ...] = field(default=(), compare=False)
 
+    @property
+    def reach(self) -> float:
+        """Length of the stretched arm, from the shoulder to the wrist centre [m]: the size of the robot."""
+        return float(self.arm.c2 + np.hypot(self.arm.a2, self.arm.c3))
+
     def __post_init__(self) -> None:
         """Check the arm's numbers."""
         arm = self.arm
