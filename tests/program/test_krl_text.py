@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from zerorev.program.krl_text import aggregate, comment, degrees, fixed, frame_angles
+from zerorev.program.krl_text import aggregate, comment, degrees, fixed, frame_angles, settled
 
 
 @pytest.mark.parametrize(
@@ -12,6 +12,15 @@ from zerorev.program.krl_text import aggregate, comment, degrees, fixed, frame_a
 )
 def test_fixed_decimals_without_a_negative_zero(value, text):
     assert fixed(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.31625, "0.3162"), (0.31635, "0.3163"), (1.0, "1.0000"), (0.00011, "0.0001"), (2.34567, "2.3457")],
+)
+def test_between_two_decimals_the_last_bits_do_not_decide(value, text):
+    for bits in range(-3, 4):
+        assert settled(value + bits * np.spacing(value)) == text
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """What is found before a program is written."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from zerorev.program.export import export
 from zerorev.program.neutral import build_program
 from zerorev.program.notes import corner_depth
 from zerorev.program.preflight import preflight
+from zerorev.program.read_back import read_krl
 
 
 def findings(plan, kind):
@@ -183,3 +186,32 @@ def test_a_fast_turn_of_the_tool_raises_the_orientation_speeds(krl, planned, pla
     assert f"{turn:.0f} deg/s" in warning.message
     state = krl.read(export(fast).text).moves[1].state
     assert state["$VEL.ORI1"] == state["$VEL.ORI2"] >= 1.2 * turn
+
+
+@pytest.mark.parametrize(
+    ("settings", "what"),
+    [
+        ({"feed_plunge": 0.9e-6}, "a feed of 0.0009 mm/s"),
+        ({"blend": 0.9e-7}, "a blend of 9e-05 mm"),
+        ({"feed_plunge": 1.1e-6, "blend": 1.1e-7}, None),
+    ],
+)
+def test_what_the_decimals_of_a_program_cannot_hold(settings, what, published, plan_of):
+    plan = plan_of(published(1), **settings)
+    if what is None:
+        assert len(read_krl(export(plan).text).holes) == 1
+        return
+    (finding,) = findings(plan, "printable")
+    assert finding.message == f"{what} is too small for a program"
+    with pytest.raises(NotExportableError, match="too small for a program"):
+        export(plan)
+
+
+def test_a_stroke_shorter_than_the_decimals(published, planned, plan_of):
+    first = published(1)
+    near = np.rad2deg(first.motion.joints[0])
+    for depth, fine in ((0.9e-6, False), (1.1e-6, True)):
+        psi = first.motion.profile.psi
+        hole = planned(replace(first.hole, depth=depth), Profile.straight(depth, *psi[[1, 1, 1]]), near=near)
+        found = findings(plan_of(hole, lead_in=0.0), "printable")
+        assert bool(found) != fine

@@ -88,7 +88,7 @@ class Expected:
     def beside(self, program: WrittenProgram, file_name: str = "") -> tuple[Drilled, ...]:
         """What a program has for each hole of the plan, as `as_exported`."""
         drilled = dict(zip(self.moving, _paired(program, [self.holes.get(own) for own in self.moving]), strict=True))
-        names = {identifier(name) for name in (self.plan.name, file_name) if name}
+        names = {identifier(self.plan.name), identifier(file_name or self.plan.name)}
         before = (*_name_differs(program, names), *self._head_differs(program, drilled))
         return tuple(self._hole(hole.hole.id, drilled.get(hole.hole.id), before) for hole in self.plan.holes)
 

@@ -22,6 +22,7 @@ from zerorev.program.krl_text import (
     fixed,
     frame_angles,
     identifier,
+    settled,
     turn_about_x,
 )
 from zerorev.program.neutral import HoleProgram, JointMove, LinearMove, Program
@@ -153,14 +154,14 @@ def _hole(hole: HoleProgram, title: str) -> list[str]:
     """
     lines = [f";FOLD {title}: {clean(hole.id)[:LONGEST_ID]}", *_about(hole), _ptp(hole.start)]
     A, B = axis_angles(hole.axis)
-    feed = blend = None
+    feed, radius = None, ""
     for move in hole.moves:
         if move.feed != feed:
             feed = move.feed
-            lines.append(f"$VEL.CP={fixed(feed, SPEED_DECIMALS)} ; {move.leg}: {feed * 1e3:g} mm/s")
-        if move.blend > 0 and move.blend != blend:
-            blend = move.blend
-            lines.append(f"$APO.CDIS={fixed(blend * 1e3)}")
+            lines.append(f"$VEL.CP={settled(feed, SPEED_DECIMALS)} ; {move.leg}: {feed * 1e3:g} mm/s")
+        if move.blend > 0 and (printed := settled(move.blend * 1e3)) != radius:
+            radius = printed
+            lines.append(f"$APO.CDIS={radius}")
         lines.append(_lin(move, A, B))
     return [*lines, f";ENDFOLD ({title})"]
 

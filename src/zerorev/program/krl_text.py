@@ -10,7 +10,17 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 
-__all__ = ["aggregate", "axis_angles", "comment", "degrees", "fixed", "frame_angles", "identifier", "turn_about_x"]
+__all__ = [
+    "aggregate",
+    "axis_angles",
+    "comment",
+    "degrees",
+    "fixed",
+    "frame_angles",
+    "identifier",
+    "settled",
+    "turn_about_x",
+]
 
 LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
 LINE = 100
@@ -66,6 +76,11 @@ def _ascii(text: str) -> str:
 def fixed(value: float, decimals: int = 4) -> str:
     """A number with fixed decimals, never a negative zero."""
     return f"{round(float(value), decimals) + 0.0:.{decimals}f}"
+
+
+def settled(value: float, decimals: int = 4) -> str:
+    """A number above 0 as `fixed`, but one just between two decimals always goes down, whatever its last bits say."""
+    return fixed(value - 1e-4 * 10.0**-decimals, decimals)
 
 
 def degrees(angle: float, decimals: int = 4) -> str:

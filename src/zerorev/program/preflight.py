@@ -18,6 +18,8 @@ SAMPLES = 401  # per move
 USUAL_TURN_SPEED = float(np.deg2rad(200.0))  # [rad/s] what KUKA's $VEL.ORI1 and $VEL.ORI2 usually are
 ON_POSE = (1e-5, float(np.deg2rad(0.01)))  # [m], [rad] between a plan's joints and its poses
 ROUND_OFF = 1e-9
+# below these the decimals of a program no longer tell two points, a feed or a radius from none
+SHORTEST_MOVE, SLOWEST_FEED, SMALLEST_BLEND = 1e-6, 1e-6, 1e-7  # [m], [m/s], [m]
 
 
 def preflight(program: Program, plan: Plan) -> tuple[Finding, ...]:
@@ -35,6 +37,7 @@ def preflight(program: Program, plan: Plan) -> tuple[Finding, ...]:
             *_joints(plan, plans[hole.id], program, hole),
             *_speeds(plan, plans[hole.id], hole),
             *_turns(hole),
+            *_printable(hole),
         )
     ]
     return (*found, *notes(program))
@@ -124,3 +127,19 @@ def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
         message += "orientation speed allows it, or it will throttle the feed"
         found.append(Finding("warning", "turn_speed", message, hole.id))
     return tuple(found)
+
+
+def _printable(hole: HoleProgram) -> tuple[Finding, ...]:
+    """What is so small that a program with its few decimals could not hold it, one error a kind."""
+    shortest = min(abs(move.standoff - standoff) for standoff, _, move in segments(hole))
+    slowest = min(move.feed for move in hole.moves)
+    smallest = min((move.blend for move in hole.moves if move.blend > 0), default=np.inf)
+    return tuple(
+        Finding("error", "printable", f"{what} of {size * 1e3:.3g} {unit} is too small for a program", hole.id)
+        for what, size, least, unit in (
+            ("a linear move", shortest, SHORTEST_MOVE, "mm"),
+            ("a feed", slowest, SLOWEST_FEED, "mm/s"),
+            ("a blend", smallest, SMALLEST_BLEND, "mm"),
+        )
+        if size < least
+    )
