@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 
 from oracles.holes import random_hole
+from zerorev import planning
 from zerorev.depth import Deepest, deepest_stroke
 from zerorev.evaluation import evaluate
+from zerorev.lead_in import find_lead_in
 from zerorev.model.files import read_job
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
@@ -176,3 +178,104 @@ class TestCut:
         found = descended(order, cut)
         assert keeps(found, settings)
         assert order.rank(found) < order.rank(cut)
+
+
+class TestCheck:
+    """No motion is stated as planned that does not pass the plan's own check."""
+
+    def test_a_motion_that_jumps_beside_a_singularity_gives_way_to_one_that_passes(self):
+        """Zero reversals exist here only where joint 4 turns by 1,900 deg/mm, which no controller follows."""
+        answer = plan(*case("zero_missed_20004"))
+        assert answer.status == "planned"
+        assert answer.verified.passed
+        (rejected,) = [finding for finding in answer.findings if finding.kind == "rejected"]
+        assert rejected.level == "warning"
+        assert "0 reversals was found, but does not pass the check: A4 jumps" in rejected.message
+
+    def test_the_next_best_that_passes_is_taken_and_none_if_none_does(self, robot, tool, positions, monkeypatch):
+        sound, refused = planning.verify_hole, []
+
+        def verify(how_many):
+            def refuse(*args):
+                refused.append(args[-1].motion)
+                passed = sound(*args)
+                return replace(passed, passed=False, failures=("planted",)) if len(refused) <= how_many else passed
+
+            return refuse
+
+        hole = positions[0].hole
+        monkeypatch.setattr(planning, "verify_hole", verify(2))
+        second = plan(robot, tool, hole)
+        assert (second.status, second.score.reversals, second.verified.passed) == ("planned", 0, True)
+        assert [finding.kind for finding in second.findings] == ["rejected"]
+        assert len(refused) == 3
+        refused.clear()
+        monkeypatch.setattr(planning, "verify_hole", verify(10_000))
+        none = plan(robot, tool, hole)
+        assert (none.status, none.motion) == ("infeasible", None)
+        assert [(finding.level, finding.kind) for finding in none.findings] == [("error", "verification")]
+        assert "planted" in none.findings[0].message
+
+    @staticmethod
+    def check_plans(seeds):
+        """Every plan passes; how many there were of each kind."""
+        counts = {"zero": 0, "reversing": 0, "rejected": 0, "infeasible": 0}
+        for seed in seeds:
+            rng = np.random.default_rng(seed)
+            drilled = random_hole(seed, narrowed=seed % 4 == 3).asking(blend=float(rng.choice([1e-3, 5e-3, 0.03])))
+            deepest = deepest_stroke(*drilled.all).depth
+            within = deepest * rng.choice([0.3, 0.9, 0.99, 1.02])
+            answer = plan(*drilled.deep(within if within > 0 else 0.02 * drilled.robot.reach).all)
+            if answer.status == "infeasible":
+                counts["infeasible"] += 1
+                continue
+            assert answer.verified.passed, (seed, answer.verified.failures)
+            counts["reversing" if answer.score.reversals else "zero"] += 1
+            counts["rejected"] += any(finding.kind == "rejected" for finding in answer.findings)
+        return counts
+
+    @pytest.mark.long
+    def test_random_plans_pass_their_own_check(self):
+        counts = self.check_plans(range(5000, 5100))
+        assert counts["zero"] >= 60
+        assert counts["infeasible"] <= 10
+
+    @pytest.mark.soak
+    def test_two_thousand_random_plans_pass_their_own_check(self, record_property):
+        counts = self.check_plans(range(10_000, 12_000))
+        record_property("measured", f"2,000 random plans, each passed its check or is infeasible: {counts}")
+        assert counts["zero"] >= 1200
+
+
+class TestLeadIn:
+    @pytest.mark.parametrize("seed", [1, 2, 9])
+    def test_kept_whole_where_it_is_asked_for(self, seed):
+        """By default it is shortened at these holes; and plan and deepest stroke agree here, too."""
+        drilled = random_hole(seed)
+        whole = deepest_as_drilled(*drilled.all)
+        kept = drilled.asking(keep_lead_in=True)
+        deepest = deepest_as_drilled(*kept.all)
+        lead_in = drilled.settings.lead_in
+        assert whole.depth - lead_in * (1 + 1e-9) <= deepest.depth <= whole.depth
+        shortened = plan(*drilled.deep(0.6 * whole.depth).all)
+        assert find_lead_in(drilled.robot, drilled.tool, shortened, lead_in).length < lead_in
+        for depth in (0.6 * whole.depth, deepest.depth, 1.02 * whole.depth):
+            asked = kept.deep(depth)
+            answer = plan(*asked.all)
+            assert keeps_plan(answer, kept.settings) == (depth <= answer.deepest), depth
+            led = find_lead_in(drilled.robot, drilled.tool, answer, lead_in)
+            assert (led.length, led.findings) == (lead_in, ())
+            assert answer.verified.passed
+
+    def test_where_there_is_none_a_finding_says_so(self, robot, tool, positions):
+        settings = Settings(keep_lead_in=True, lead_in=2.0)
+        answer = plan(robot, tool, positions[0].hole, settings)
+        assert answer.status == "infeasible"
+        assert [(finding.level, finding.kind) for finding in answer.findings] == [("error", "lead_in")]
+        assert "whole lead-in of 2000 mm" in answer.findings[0].message
+
+
+def keeps_plan(answer, settings):
+    """Zero reversals, and the motion threshold at every point, of a plan."""
+    rates = answer.score.min_rate
+    return bool(answer.score.reversals == 0 and rates.min() >= settings.min_rate * (1 - 1e-6))

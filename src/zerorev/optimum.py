@@ -8,18 +8,21 @@ threshold at every point is found at a depth if and only if the depth is at most
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from zerorev.depth import Deepest, deepened, deepest_stroke
+from zerorev.lead_in import find_lead_in
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
+from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.cut_short import cut_short, descended
+from zerorev.search.cut_short import cut_short, descended, legs_swapped
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
 from zerorev.search.problem import Problem
@@ -27,9 +30,11 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import LEAST_RATE
 from zerorev.search.weighted import search_weighted
 
-__all__ = ["LEAST_STROKE", "Optimum", "best_motion", "deepest_as_drilled", "optimum", "too_short"]
+__all__ = ["LEAST_STROKE", "Optimum", "alternatives", "best_motion", "deepest_as_drilled", "optimum", "too_short"]
 
+MORE_MARGIN = ((1.0, 10.0), (1.05, 1e3), (1.5, 1e4), (3.0, 1e5))  # of the threshold, and of the least rate besides
 LEAST_STROKE = 1e-7  # of the reach: in a shorter one the joints move by little more than the rounding of an angle
+LEAD_IN_STEPS = 14  # halvings of a lead-in, to 1 um of 10 mm
 SAME_PLACE = 1e-9  # [m]
 SAME_RATE = 1e-6  # relative: by so much the slowest joint may be below the motion threshold and still keep it
 
@@ -80,8 +85,32 @@ def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings)
     pool = _Pool(robot, tool, replace(hole, profile=None), settings)
     if pool.deepest.depth >= pool.hole.depth:
         return pool.as_drilled(pool.deepest)
-    best = [without_reversal(Problem(robot, tool, pool.hole, settings)), pool.free, *pool.given(hole)]
-    return pool.as_drilled(pool.raised(pool.order.best(best)))
+    found = [without_reversal(Problem(robot, tool, pool.hole, settings)), pool.free, *pool.given(hole)]
+    best = pool.order.best(one for one in found if one is not None and pool.allows(one))
+    return pool.as_drilled(pool.raised(best))
+
+
+def alternatives(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> list[Candidate]:
+    """Other good motions of a hole, best first: with more margin, and on every branch alone.
+
+    They are for a hole of which the best motion does not pass the check: next to a singularity, or where a joint that
+    hardly moves reverses in the blend of the corner.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: what to drill.
+        settings: by which they are ranked.
+    """
+    order = Order(robot, tool, hole, settings)
+    bolder = [settings.min_rate * share + LEAST_RATE * times for share, times in MORE_MARGIN]
+    asked = [replace(settings, min_rate=rate) for rate in bolder]
+    asked.append(replace(settings, objective="margin", weights=()))
+    found = [best_motion(robot, tool, hole, other) for other in asked]
+    branches = range(8) if hole.branch is None else ()
+    found += [best_motion(robot, tool, replace(hole, branch=branch), settings) for branch in branches]
+    judged = (order.candidate(one.profile, one.branch) for one in found if one is not None)
+    return sorted((one for one in judged if one is not None), key=order.rank)
 
 
 def too_short(robot: Robot, hole: Hole) -> bool:
@@ -102,7 +131,8 @@ class _Pool:
     @cached_property
     def deepest(self) -> Deepest:
         """The deepest stroke, whatever the depth of the hole."""
-        return deepest_stroke(self.robot, self.tool, self.hole, self.settings)
+        found = deepest_stroke(self.robot, self.tool, self.hole, self.settings)
+        return self.led_in(found) if self.settings.keep_lead_in else found
 
     @cached_property
     def free(self) -> Candidate | None:
@@ -142,6 +172,56 @@ class _Pool:
         best = order.best([straight(self.robot, self.tool, self.hole, self.settings, known), *known])
         if best is not None and best is cut:  # the search has overlooked its valley
             best = descended(order, best)
+        if best is not None and not self.allows(best):
+            best = order.best(one for one in self.with_lead_in(best) if self.allows(one))
+        return best
+
+    def allows(self, motion: Candidate) -> bool:
+        """Whether the whole lead-in of a motion runs without a reversal, where the settings ask for that."""
+        if not self.settings.keep_lead_in:
+            return True
+        hole = replace(self.hole, depth=motion.depth)
+        plan = HolePlan(hole, "planned", 0.0, motion.evaluation.motion)
+        wanted = self.settings.lead_in
+        return find_lead_in(self.robot, self.tool, plan, wanted).length == wanted
+
+    def with_lead_in(self, best: Candidate) -> Iterator[Candidate]:
+        """Motions of which the lead-in may run: the best one with its legs swapped, and those of a deeper hole."""
+        longer = replace(self.hole, depth=self.hole.depth + self.settings.lead_in)
+        deeper = _Pool(self.robot, self.tool, longer, replace(self.settings, keep_lead_in=False, deepen_corner=False))
+        whole = [deeper.best(), self.cut()]
+        inner = [cut_short(one.profile, self.hole.depth) for one in whole if one is not None]
+        branches = [one.branch for one in whole if one is not None]
+        for profile, branch in zip([best.profile, *inner], [best.branch, *branches], strict=True):
+            for way in (profile, legs_swapped(profile)):
+                found = self.order.candidate(way, branch)
+                if found is not None:
+                    yield found
+
+    def led_in(self, found: Deepest) -> Deepest:
+        """The deepest stroke whose whole lead-in runs, cut from the deepest motion, its legs swapped or not."""
+        if found.profile is None or found.branch is None:
+            return found
+        ways = [self.longest_led_in(way, found.branch) for way in (found.profile, legs_swapped(found.profile))]
+        best = max((cut for cut in ways if cut is not None), key=lambda cut: cut.depth, default=None)
+        if best is None:
+            return Deepest(0.0, beyond_cap=found.beyond_cap)
+        return replace(found, depth=best.depth, profile=best.profile, branch=best.branch)
+
+    def longest_led_in(self, whole: Profile, branch: int) -> Candidate | None:
+        """The longest inner part of a motion whose lead-in runs: the outer part of the motion itself, at least."""
+        best, high = None, float(whole.standoff[0])
+        low = max(high - self.settings.lead_in, 0.0)
+        for step in range(LEAD_IN_STEPS):
+            depth = high if step == 0 else low if step == 1 and low > 0 else 0.5 * (low + high)
+            hole = replace(self.hole, depth=depth)
+            cut = Order(self.robot, self.tool, hole, self.settings).candidate(cut_short(whole, depth), branch)
+            if cut is not None and self.allows(cut):
+                best, low = cut, depth
+            else:
+                high = depth
+            if high <= low:
+                break
         return best
 
     def raised(self, best: Candidate | None) -> Deepest:
@@ -150,6 +230,8 @@ class _Pool:
             return self.deepest
         if best.score.min_rate.min() < max(self.settings.min_rate, LEAST_RATE / 2) * (1 - SAME_RATE):
             return self.deepest
+        if self.settings.keep_lead_in:
+            return replace(self.deepest, depth=best.depth, profile=best.profile, branch=best.branch)
         deeper = deepened(self.robot, self.tool, self.hole, self.settings, best)
         return replace(deeper, beyond_cap=self.deepest.beyond_cap)
 

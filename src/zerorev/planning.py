@@ -19,7 +19,7 @@ from zerorev.model.plan import Baseline, Finding, HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.optimum import LEAST_STROKE, deepest_as_drilled, optimum, too_short
+from zerorev.optimum import LEAST_STROKE, alternatives, deepest_as_drilled, optimum, too_short
 from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
@@ -48,7 +48,7 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
         found = optimum(robot, tool, hole, settings)
-        answer = _answered(robot, tool, hole, settings, "planned", found.motion)
+        answer = _planned(robot, tool, hole, settings, found.motion)
         return _with_deepest(answer, settings, found.deepest)
     answer = _evaluated(robot, tool, hole, settings, hole.profile)
     return _with_deepest(answer, settings, deepest_as_drilled(robot, tool, hole, settings))
@@ -76,7 +76,25 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         return _with_deepest(answer, settings, deepest)
     hole = replace(hole, depth=deepest.depth)
     best = Order(robot, tool, hole, settings).candidate(deepest.profile, deepest.branch)
-    return _with_deepest(_answered(robot, tool, hole, settings, "planned", best), settings, deepest)
+    return _with_deepest(_planned(robot, tool, hole, settings, best), settings, deepest)
+
+
+def _planned(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: Candidate | None) -> HolePlan:
+    """The answer that the best motion makes; where it does not pass the check, the best one found that does."""
+    answer = _answered(robot, tool, hole, settings, "planned", best)
+    if answer.verified is None or answer.verified.passed:
+        return answer
+    why = answer.verified.failures[0]
+    for other in alternatives(robot, tool, hole, settings):
+        tried = _answered(robot, tool, hole, settings, "planned", other)
+        if tried.verified is not None and tried.verified.passed:
+            assert answer.score is not None
+            message = f"a motion with {answer.score.reversals} reversals was found, but does not pass the check: {why}"
+            rejected = Finding("warning", "rejected", message, hole.id)
+            return replace(tried, findings=(*tried.findings, rejected))
+    message = f"no motion was found that passes the check; of the best one: {why}"
+    findings = (Finding("error", "verification", message, hole.id),)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
 
 
 def _answered(
@@ -201,6 +219,11 @@ def _why_infeasible(robot: Robot, tool: Tool, hole: Hole, settings: Settings) ->
     if can_run(wide, tool, hole, settings):
         spins = "" if settings.psi_bound is None else f" within +-{np.rad2deg(settings.psi_bound):g} deg of spin"
         message = f"no branch drills it within the joint limits{spins}"
+        if settings.keep_lead_in and can_run(robot, tool, hole, settings):
+            message = (
+                f"no motion was found whose whole lead-in of {settings.lead_in * 1e3:g} mm runs without a reversal"
+            )
+            return (Finding("error", "lead_in", message, hole.id),)
         return (Finding("error", "limit", message, hole.id),)
     where = ", ".join(f"{value:.1f}" for value in hole.target * 1e3)
     message = f"out of reach: no branch and spin brings the tool along the axis at ({where}) mm"

@@ -112,6 +112,7 @@ def settings_from(form: SettingsForm) -> Settings:
         blend_shortfall=None if form.blend_shortfall_mm is None else float(m(form.blend_shortfall_mm)),
         deepen_corner=form.deepen_corner,
         lead_in=float(m(form.lead_in_mm)),
+        keep_lead_in=form.keep_lead_in,
         feed_plunge=float(m(form.feed_mm_s.plunge)),
         feed_retract=float(m(form.feed_mm_s.retract)),
         spindle_rpm=form.spindle_rpm,
@@ -142,6 +143,7 @@ def settings_data(settings: Settings) -> dict[str, Any]:
         "blend_shortfall_mm": None if settings.blend_shortfall is None else mm(settings.blend_shortfall),
         "deepen_corner": settings.deepen_corner,
         "lead_in_mm": mm(settings.lead_in),
+        "keep_lead_in": settings.keep_lead_in,
         "feed_mm_s": {"plunge": mm(settings.feed_plunge), "retract": mm(settings.feed_retract)},
         "spindle_rpm": settings.spindle_rpm,
     }

@@ -48,6 +48,8 @@ class Settings:
         blend_shortfall: depth lost to the blend [m], as measured on the controller; None: half the radius.
         deepen_corner: place the corner deeper by the shortfall, so that the true depth is met.
         lead_in: length [m] run along the plunge leg before the drill enters.
+        keep_lead_in: only motions count whose whole lead-in runs without a reversal; else it is shortened where it
+            cannot, with a finding.
         feed_plunge: feed of the plunge [m/s].
         feed_retract: feed of the retract [m/s].
         spindle_rpm: speed of the spindle [rev/min], or None where the program need not know it.
@@ -67,6 +69,7 @@ class Settings:
     blend_shortfall: float | None = None
     deepen_corner: bool = False
     lead_in: float = 5e-3
+    keep_lead_in: bool = False
     feed_plunge: float = 5e-3
     feed_retract: float = 20e-3
     spindle_rpm: float | None = None

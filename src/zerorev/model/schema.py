@@ -211,6 +211,11 @@ class SettingsForm(Form):
     lead_in_mm: NotNegative = Field(
         default=5.0, description="a number, 0 or more [mm]: length run along the plunge leg before the drill enters"
     )
+    keep_lead_in: bool = Field(
+        default=False,
+        description="true or false: whether only motions count whose whole lead-in runs without a reversal; false: it "
+        "is shortened where it cannot",
+    )
     feed_mm_s: FeedForm = Field(default=FeedForm(), description="a mapping of plunge and retract, each above 0 [mm/s]")
     spindle_rpm: Positive | None = Field(
         default=None,

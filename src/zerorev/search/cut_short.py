@@ -10,7 +10,7 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Legs, Rules, bettered, motion_of
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
-__all__ = ["cut_short", "descended"]
+__all__ = ["cut_short", "descended", "legs_swapped"]
 
 POINTS = 33  # of a leg at which the joints are examined
 ENOUGH_LACK = 1e-6  # [rad/m]
@@ -35,6 +35,11 @@ def cut_short(profile: Profile, depth: float) -> Profile:
         np.concatenate([standoff[0][:0:-1], standoff[1]]),
         np.concatenate([psi[0][:0:-1], psi[1]]),
     )
+
+
+def legs_swapped(profile: Profile) -> Profile:
+    """The same motion run backwards: the mirror law gives it the same reversals and travel (theory §7)."""
+    return Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy())
 
 
 def descended(order: Order, motion: Candidate) -> Candidate:

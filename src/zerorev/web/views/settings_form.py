@@ -39,6 +39,7 @@ CRITERIA_WORDS = {
 RULES = {"pointwise": "at every point", "mean": "on the average of each leg"}
 LEGS = {"straight": "straight: spin even along each leg", "free": "free: spin varies along the axis"}
 DEPTHS = {False: "at the target, depth lost to the blend", True: "deeper, so that the depth is met"}
+LEAD_INS = {False: "it is shortened", True: "the motion is another one"}
 MAY_BE_EMPTY = ("psi_bound_deg", "blend_shortfall_mm", "spindle_rpm")
 SIX_OR_NONE = ("joint_stiffness_nm_per_rad", "near_joints_deg")
 
@@ -124,6 +125,7 @@ def _run(fields: Fields) -> None:
         fields.text(("blend_shortfall_mm",), "depth lost to it [mm]", "shortfall", placeholder="half of the blend")
         fields.choice(("deepen_corner",), "the corner lies", "deepen", DEPTHS)
         fields.text(("lead_in_mm",), "lead-in [mm]", "lead-in")
+        fields.choice(("keep_lead_in",), "where a joint would reverse on it", "keep-lead-in", LEAD_INS)
         fields.text(("feed_mm_s", "plunge"), "feed of the plunge [mm/s]", "feed-plunge")
         fields.text(("feed_mm_s", "retract"), "feed of the retract [mm/s]", "feed-retract")
         fields.text(("spindle_rpm",), "spindle [rev/min]", "spindle", placeholder="not known")
