@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
@@ -11,8 +12,20 @@ import numpy as np
 import zerorev as zr
 from zerorev import kinematics
 from zerorev.search.exact import search
+from zerorev.verify.certificate import certify_hole
 
-__all__ = ["NO_THRESHOLD", "Answer", "Case", "drilled", "exact", "mirrored", "positions", "random_place"]
+__all__ = [
+    "NO_THRESHOLD",
+    "Answer",
+    "Case",
+    "certified",
+    "certified_holes",
+    "drilled",
+    "exact",
+    "mirrored",
+    "positions",
+    "random_place",
+]
 
 NO_THRESHOLD = zr.Settings(min_rate=0.0)
 JOB = Path(__file__).parents[1] / "examples" / "jobs" / "thesis_least_travel.yaml"
@@ -73,3 +86,28 @@ def exact(case: Case) -> Answer | None:
     """The exact straight-leg optimum, no motion threshold, spin periodic."""
     found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
     return None if found is None else Answer(found.profile, found.branch)
+
+
+def certified(seed: int, settings: zr.Settings) -> zr.Plan | None:
+    """A plan of one random hole, certified; None where a joint reverses, or nothing is certified."""
+    case = random_place(seed)
+    job = zr.Job(name=f"seed {seed}", robot=case.robot, tool=case.tool, holes=(case.hole,), settings=settings)
+    plan = zr.plan_job(job)
+    hole = plan.holes[0]
+    if hole.score is None or hole.score.reversals:
+        return None
+    certificate = certify_hole(plan.robot, plan.tool, plan.settings, hole)
+    return (
+        replace(plan, holes=(replace(hole, certificate=certificate),)) if certificate.verdict == "certified" else None
+    )
+
+
+def certified_holes(seed: int, count: int, settings: zr.Settings) -> Iterator[zr.Plan]:
+    """Plans of so many random holes, the first ones from a seed on that are certified."""
+    found = 0
+    while found < count:
+        plan = certified(seed, settings)
+        if plan is not None:
+            found += 1
+            yield plan
+        seed += 1

@@ -25,6 +25,7 @@ from benchmarks.parts import (
     parameter_map,
     start,
     swarm,
+    tolerance,
 )
 from benchmarks.table import Section, load, page, save
 from zerorev.model.output import write_text
@@ -39,6 +40,7 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "map_scaling": map_scaling.run,
     "map_great": map_great.run,
     "certificate": certificate.run,
+    "tolerance": tolerance.run,
     "start": start.run,
     "job": job.run,
     "holes": holes.run,

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
+from zerorev.cli.tolerances import Tolerances
 from zerorev.errors import InputError
 from zerorev.report import terminal
 
@@ -18,7 +19,18 @@ PLAN_FILE = "a plan file (JSON)"
 
 
 @app.command
-def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, json: bool = False) -> int:
+def check(
+    plan: Path,
+    /,
+    *,
+    certify: bool = False,
+    program: Path | None = None,
+    tolerance: bool = False,
+    tolerance_mm: float | None = None,
+    tolerance_deg: float | None = None,
+    tolerance_ratio: float | None = None,
+    json: bool = False,
+) -> int:
     """Check a plan anew, from the robot, the tool and the holes that it states.
 
     Args:
@@ -27,6 +39,12 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
             file; what is refuted or cannot be decided is said.
         program: With --certify: prove this program (.src), exported from the plan, instead: the rounded numbers that
             stand in it, lead-in and all. The plan file is left as it is.
+        tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
+            be certified, and write it into the plan file.
+        tolerance_mm: With --certify: certify each hole for every part frame whose origin is at most so far [mm] off the
+            stated one along each of its axes, and that is turned by at most --tolerance-deg.
+        tolerance_deg: Beside --tolerance-mm: the greatest angle [deg], about any axis through the stated origin.
+        tolerance_ratio: Beside --tolerance: how many mm of it go with 1 deg; 10 by default.
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
             of each hole of the program.
     """
@@ -37,6 +55,8 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
 
     if program is not None and not certify:
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
+    asked = Tolerances(tolerance, tolerance_mm, tolerance_deg, tolerance_ratio)
+    asked.check(certify=certify, program=program is not None)
     if certify:
         need("flint", "python-flint", "--certify", "certify")
     if certify and program is None:
@@ -62,10 +82,8 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
             drilled = as_exported(answer, written, program.stem)
             answer = certify_program(answer, written, drilled)
     elif certify:
-        from zerorev.verify.certificate import certify_plan
-
         with terminal.busy("proving"):
-            answer = certify_plan(answer)
+            answer = asked.certified(answer)
         write_plan(answer, plan)
         remember(read_text(plan, PLAN_FILE))
     if json and program is not None:
@@ -78,7 +96,7 @@ def check(plan: Path, /, *, certify: bool = False, program: Path | None = None, 
             terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
         elif certify:
             terminal.say(f"check and certificates written into {plan}")
-    return _verdict(answer, certify=certify)
+    return _verdict(answer, certify=certify) or asked.verdict(answer)
 
 
 @app.command

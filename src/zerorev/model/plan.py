@@ -27,6 +27,7 @@ __all__ = [
     "Score",
     "Strokes",
     "Verification",
+    "Within",
 ]
 
 V = TypeVar("V", float, Array)
@@ -202,6 +203,22 @@ class Certificate:
 
 
 @dataclass(frozen=True)
+class Within:
+    """How far a part may stand off where it was modelled: a bound of the placement error.
+
+    The origin of the part frame is off by at most so much along each of its axes, and the part is turned about that
+    origin, about any axis, by at most so much.
+
+    Attributes:
+        position: along each axis of the part frame [m].
+        rotation: about any axis [rad].
+    """
+
+    position: float
+    rotation: float
+
+
+@dataclass(frozen=True)
 class HolePlan:
     """One hole's answer.
 
@@ -220,6 +237,7 @@ class HolePlan:
             none, None where it was not looked for.
         critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
             finite where a joint has none; None without a motion.
+        certified_within: every placement error of the part within these bounds is certified, too; None until proven.
     """
 
     hole: Hole
@@ -234,6 +252,7 @@ class HolePlan:
     measures: Measures[float] | None = None
     deepest: float | None = None
     critical_rates: Array | None = None
+    certified_within: Within | None = None
 
 
 @dataclass(frozen=True)

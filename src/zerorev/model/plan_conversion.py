@@ -31,6 +31,7 @@ from zerorev.model.plan import (
     Plan,
     Score,
     Verification,
+    Within,
 )
 from zerorev.model.plan_data import MOTION, RPM, SCORE
 from zerorev.model.plan_schema import (
@@ -45,6 +46,7 @@ from zerorev.model.plan_schema import (
     PlanFile,
     PlanHole,
     VerifiedForm,
+    WithinForm,
 )
 from zerorev.model.profile import Profile
 from zerorev.model.validation import inside
@@ -127,6 +129,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             verified=_verified_from(form.verified),
             findings=_findings_from(form.findings),
             certificate=_certificate_from(form.certificate) if form.certificate else None,
+            certified_within=_within_from(form.certified_within) if form.certified_within else None,
             measures=_measures_from(form.criteria) if form.criteria else None,
             deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
             critical_rates=_critical_from(form.critical_rates_deg_per_mm),
@@ -209,6 +212,10 @@ def _certificate_from(form: CertificateForm) -> Certificate:
         limit_distance=rad(_measured(form.limit_distance_deg)),
         reasons=tuple(form.reasons),
     )
+
+
+def _within_from(form: WithinForm) -> Within:
+    return Within(float(m(form.mm)), float(rad(form.deg)))
 
 
 def _measures_from(form: CriteriaForm) -> Measures[float]:

@@ -10,7 +10,18 @@ from zerorev.model._arrays import Array
 from zerorev.model._units import deg, deg_per_mm, mm, plain
 from zerorev.model.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.model.hole import Hole
-from zerorev.model.plan import Baseline, Certificate, HolePlan, Measures, Motion, Plan, Score, Strokes, Verification
+from zerorev.model.plan import (
+    Baseline,
+    Certificate,
+    HolePlan,
+    Measures,
+    Motion,
+    Plan,
+    Score,
+    Strokes,
+    Verification,
+    Within,
+)
 from zerorev.model.plan_schema import DepthFile, PlanFile
 
 __all__ = ["FORMS", "MOTION", "RPM", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head"]
@@ -82,6 +93,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "baseline": _baseline_data(answer.baseline),
         "verified": _verified_data(answer.verified),
         "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
+        "certified_within": _within_data(answer.certified_within) if answer.certified_within else None,
         "criteria": _criteria_data(answer.measures) if answer.measures else None,
         "findings": [vars(finding) for finding in answer.findings],
     }
@@ -165,6 +177,10 @@ def _certificate_data(certificate: Certificate) -> dict[str, Any]:
         "limit_distance_deg": deg(certificate.limit_distance),
         "reasons": certificate.reasons,
     }
+
+
+def _within_data(within: Within) -> dict[str, Any]:
+    return {"mm": mm(within.position), "deg": deg(within.rotation)}
 
 
 def _criteria_data(measures: Measures[float]) -> dict[str, Any]:

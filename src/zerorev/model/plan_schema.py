@@ -155,6 +155,13 @@ class CertificateForm(Form):
     reasons: list[str] = Field(description="a list of text: what is refuted or undecided, one sentence each")
 
 
+class WithinForm(Form):
+    """How far the part may stand off its part frame."""
+
+    mm: NotNegative = Field(description="a number [mm]: its origin, along each axis of the part frame")
+    deg: NotNegative = Field(description="a number [deg]: turned about that origin, about any axis")
+
+
 class PlanHole(Form):
     """One hole's answer; what describes a motion is null where there is none."""
 
@@ -207,6 +214,10 @@ class PlanHole(Form):
     )
     certificate: CertificateForm | None = Field(
         default=None, description="a mapping of what is proven of the continuous motion; or null: it was not asked for"
+    )
+    certified_within: WithinForm | None = Field(
+        default=None,
+        description="a mapping of mm and deg: certified for every part frame within; or null: not proven",
     )
     criteria: CriteriaForm | None = Field(
         default=None, description="a mapping of what the criteria measure of the motion; or null: it was not measured"

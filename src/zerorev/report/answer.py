@@ -39,7 +39,8 @@ class Shown:
         self._findings: list[Finding] = list(plan.findings)
         self._status, self._reversals = Counter[str](), Counter[int]()
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
-                                                      "deepest beyond depth [mm]")}  # fmt: skip
+                                                      "deepest beyond depth [mm]",
+                                                      "certified within [mm]")}  # fmt: skip
         self.sound, self.certified = not any(finding.level == "error" for finding in plan.findings), True
         for answer in answers:
             self.add(answer)
@@ -64,6 +65,8 @@ class Shown:
             yield "travel [deg]", float(np.rad2deg(answer.score.travel))
         if slow := tables.slowest(answer.score, self._plan.settings):
             yield "slowest joint [deg/mm]", float(np.rad2deg(slow[0]) / 1e3)
+        if answer.certified_within is not None:
+            yield "certified within [mm]", answer.certified_within.position * 1e3
         if answer.deepest is not None:
             yield "deepest [mm]", answer.deepest * 1e3
             if self._plan.strokes == "asked":

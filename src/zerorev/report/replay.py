@@ -116,6 +116,8 @@ def _figures(plan: Plan, answer: HolePlan) -> list[list[str]]:
     rows.append(["checked", "not yet" if verified is None else "passed" if verified.passed else "FAILED", ""])
     if answer.certificate is not None:
         rows.append(["certificate", answer.certificate.verdict, ""])
+    if (within := answer.certified_within) is not None:
+        rows.append(["certified within", f"{mm(within.position):.6g} mm, {deg(within.rotation):.6g} deg", ""])
     return rows
 
 

@@ -62,6 +62,8 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         verdict = Text("FAILED", style="bold red")
     if hole.certificate is not None:
         verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
+    if (within := hole.certified_within) is not None:
+        verdict.append(f" within {within.position * 1e3:.6g} mm, {np.rad2deg(within.rotation):.6g} deg", "green")
     slow = slowest(score, plan.settings)
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),

@@ -29,14 +29,16 @@ __all__ = ["certify_hole", "certify_motion", "certify_plan"]
 
 
 def certify_plan(plan: Plan) -> Plan:
-    """The plan with `certificate` filled in for each hole that has a motion.
+    """The plan with `certificate` filled in for each hole that has a motion; `certified_within` is taken out.
 
     Args:
         plan: any plan, also a wrong one.
     """
     robot, tool, settings = plan.robot, plan.tool, plan.settings
     holes = tuple(
-        hole if hole.motion is None else replace(hole, certificate=certify_hole(robot, tool, settings, hole))
+        hole
+        if hole.motion is None
+        else replace(hole, certificate=certify_hole(robot, tool, settings, hole), certified_within=None)
         for hole in plan.holes
     )
     return replace(plan, holes=holes)

@@ -1,25 +1,29 @@
 """The arm in ball arithmetic: joint rates and angles of a pose in motion, as numbers or as Taylor series.
 
-One set of formulas serves both kinds of `Ball`: an `arb` gives a rigorous enclosure at a point, an `arb_series` one of
-every Taylor coefficient. The rates need the cosines and sines of the joints alone, and these come out of the pose
-algebraically: seen from above the wrist centre turns axis 1; shoulder, elbow and wrist centre are a triangle; what is
-then left of the tool's turning is the wrist's. Written apart from the kernels and from the sampled check.
+One set of formulas serves all kinds of `Ball`: an `arb` gives a rigorous enclosure at a point, an `arb_series` one of
+every Taylor coefficient, a `Taylor` model one over all placements of the part. The rates need the cosines and sines of
+the joints alone, and these come out of the pose algebraically: seen from above the wrist centre turns axis 1; shoulder,
+elbow and wrist centre are a triangle; what is then left of the tool's turning is the wrist's. Written apart from the
+kernels and from the sampled check.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Generic, NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 from flint import arb
 
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
+from zerorev.verify.certificate_taylor import Taylor
 from zerorev.verify.certificate_vector import Axes, Ball, Vector, Vector3, combined, turned
 
 __all__ = ["Body", "Pose", "Posture", "Setting", "Twist", "angles", "body_at", "flange_at", "posture_of", "rates"]
 
 EX, EY, EZ = ((arb(int(k == 0)), arb(int(k == 1)), arb(int(k == 2))) for k in range(3))
+
+Number = TypeVar("Number", arb, Taylor)
 
 
 class Posture(NamedTuple):
@@ -147,7 +151,9 @@ def rates(setting: Setting, body: Body[Ball], twist: Twist[Ball]) -> list[Ball]:
     return [rate * int(sign) for rate, sign in zip((q1, q2, q23 - q2, q4, q5, q6), setting.arm.sign, strict=True)]
 
 
-def angles(setting: Setting, body: Body[arb], flange: Axes) -> list[arb]:
+def angles(
+    setting: Setting, body: Body[Number], flange: tuple[Vector3[Number], Vector3[Number], Vector3[Number]]
+) -> list[Number]:
     """The six controller angles [rad], turns as they fall.
 
     Args:
@@ -211,8 +217,10 @@ def _sign(value: arb) -> int:
     return 1 if value > 0 else -1 if value < 0 else 0
 
 
-def _angle(sine: arb, cosine: arb) -> arb:
+def _angle(sine: Number, cosine: Number) -> Number:
     """The angle of a direction; tight also where that is +-180 deg."""
+    if isinstance(sine, Taylor):
+        return sine.atan2(cosine)
     if cosine < 0 and not (sine > 0 or sine < 0):
         return arb.atan2(-sine, -cosine) + arb.pi()
     return arb.atan2(sine, cosine)

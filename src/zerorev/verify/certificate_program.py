@@ -29,7 +29,7 @@ JOINTS = float(np.deg2rad(0.1))  # between the plan and the rounded program; ano
 
 
 def certify_program(plan: Plan, program: WrittenProgram, drilled: Sequence[Drilled]) -> Plan:
-    """The plan with each `certificate` replaced by the program's.
+    """The plan with each `certificate` replaced by the program's, and without `certified_within`, which is the plan's.
 
     Args:
         plan: from which the program was exported.
@@ -39,7 +39,7 @@ def certify_program(plan: Plan, program: WrittenProgram, drilled: Sequence[Drill
     return replace(
         plan,
         holes=tuple(
-            replace(hole_plan, certificate=_certified(plan, hole_plan, program, own))
+            replace(hole_plan, certificate=_certified(plan, hole_plan, program, own), certified_within=None)
             for hole_plan, own in zip(plan.holes, drilled, strict=True)
         ),
     )

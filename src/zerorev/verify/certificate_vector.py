@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 from flint import arb, arb_series
 
 from zerorev.model._arrays import Array
+from zerorev.verify.certificate_taylor import Taylor
 
 __all__ = [
     "Axes",
@@ -25,7 +26,7 @@ __all__ = [
     "vector",
 ]
 
-Ball = TypeVar("Ball", arb, arb_series)
+Ball = TypeVar("Ball", arb, arb_series, Taylor)
 Vector3 = tuple[Ball, Ball, Ball]
 Vector = tuple[arb, arb, arb]
 Axes = tuple[Vector, Vector, Vector]
@@ -75,7 +76,7 @@ def across(v: Vector, axis: Vector) -> Vector:
     return scaled(combined((v, arb(1)), (axis, -dot(v, axis))))
 
 
-def turned(v: tuple[Any, Any, Any], axis: Vector, cos: Ball, sin: Ball) -> Vector3[Ball]:
+def turned(v: tuple[Any, Any, Any], axis: tuple[Any, Any, Any], cos: Ball, sin: Ball) -> Vector3[Ball]:
     """A vector, of numbers or of series, turned about a unit axis by the angle of a cosine and a sine (Rodrigues)."""
     along = dot(v, axis)
     x, y, z = (part * along for part in axis)
