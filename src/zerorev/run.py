@@ -44,11 +44,11 @@ def run(
     shown, kept = Shown(head), list[HolePlan]()
     with nullcontext() if output is None else Part(output, head, job.holes) as part:
         keep = figures is not None or (json and output is None)
-        anew = part is not None and part.done == 0
+        fresh = part is not None and part.done == 0
         _answer(job, strokes, processes, part, (shown.add, kept.append) if keep else (shown.add,))
         if part is not None:
             part.finish()
-    if output is not None and anew:  # what was kept from another run was not checked by this one
+    if output is not None and fresh:  # what was kept from another run was not checked by this one
         remember(read_text(output, "the plan file that was just written"))
     whole = replace(head, holes=tuple(kept))
     if figures is not None:

@@ -112,8 +112,8 @@ class Draw:
         return self.at == 0 or self.tokens[self.at - 1].line < self.token.line
 
     def printed_to_the_last_digit(self):
-        """Whether a unit in the last digit may differ: the numbers of points, frames and blends."""
-        return "{" in self.code or self.code.startswith("$APO.CDIS")
+        """Whether a unit in the last digit may differ: the numbers of points and frames."""
+        return "{" in self.code
 
 
 # --- words, numbers and signs -----------------------------------------------------------------------------------------
@@ -304,7 +304,7 @@ def other_header(d):
 
 def spoilt_header(d):
     return d.put(
-        d.pick([d.own[1:], f"&NO{d.own[1:]}", f"{d.own}{d.pick(ODD)}", f" {d.own}", f"{d.own}\nHALT"]),
+        d.pick([d.own[1:], f"&NO{d.own[1:]}", f"{d.own[:2]}{d.pick(ODD)}{d.own[2:]}", f" {d.own}", f"{d.own}\nHALT"]),
         "a spoilt header",
     )
 

@@ -42,7 +42,7 @@ def test_feeds_between_two_printed_digits(feed, published, plan_of):
 
 
 def test_a_turn_at_a_whole_number_of_degrees_a_second(published, planned, plan_of):
-    """18 deg over 1 mm at 20 mm/s are 360 deg/s, and 432 with the reserve, whatever the last bits say."""
+    """18 deg over 1 mm at 20 mm/s are 360 deg/s, and 432 with the reserve: the last bits do not decide."""
     first = published(1)
     near, psi = [143, -108, -79, 11, 88, 217], np.deg2rad([12.0, 2.0, -16.0])
     hole = planned(replace(first.hole, depth=1e-3), Profile(np.array([1e-3, 0.0, 1e-3]), psi), near=near)

@@ -160,7 +160,7 @@ def test_the_proof_that_check_writes_into_the_file(files, checks):
 
 
 def test_what_another_run_left_is_checked(files, checks, monkeypatch):
-    """A part may have been altered; the run that goes on from it checks only its own holes."""
+    """A part may have been altered; the run that resumes it checks only its own holes."""
     job, plan, program = files
     asked, answer = zr.read_job(job), zr.plan_job(zr.read_job(job))
     with contextlib.suppress(KeyboardInterrupt), Part(plan, unanswered(asked, "asked"), asked.holes) as part:

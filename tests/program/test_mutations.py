@@ -80,6 +80,12 @@ def test_a_thousand_mutations(plan):
     assert sum(count for (_, harmless), count in found.items() if harmless is None) > 500
 
 
+@pytest.mark.soak
+@pytest.mark.parametrize("seed", range(3, 23))
+def test_twenty_thousand_mutations(seed, plan):
+    hold(plan, 1000, seed)
+
+
 # --- edits that were once certified, by the command line --------------------------------------------------------------
 
 
@@ -139,6 +145,7 @@ EDITS = {
     "a slow turn": swapped("$VEL.ORI1=200.0", "$VEL.ORI1=0.2"),
     "a smaller blend": swapped("$APO.CDIS=2.0000", "$APO.CDIS=0.5000"),
     "a greater blend": swapped("$APO.CDIS=2.0000", "$APO.CDIS=2.0010"),
+    "a blend one digit less": swapped("$APO.CDIS=2.0000", "$APO.CDIS=1.9999"),
     "a stop": swapped("} C_DIS ; corner", "} ; corner"),
     "another name": swapped("DEF program ( )", "DEF other ( )"),
     "no declaration": swapped("EXT BAS (BAS_COMMAND :IN,REAL :IN )\n", ""),

@@ -79,7 +79,7 @@ def fixed(value: float, decimals: int = 4) -> str:
 
 
 def settled(value: float, decimals: int = 4) -> str:
-    """A number above 0 as `fixed`, but one just between two decimals always goes down, whatever its last bits say."""
+    """A number above 0 as `fixed`, but one just between two decimals always goes down: its last bits do not decide."""
     return fixed(value - 1e-4 * 10.0**-decimals, decimals)
 
 

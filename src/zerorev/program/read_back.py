@@ -2,7 +2,7 @@
 
 Strict: a statement of another form than `zerorev.program.krl` writes is an error, for it might move the robot in a way
 that nobody has examined. Numbers are kept as the decimals that they are. What the certificate assumes of the controller
-is held here, whatever the plan says: how the tool turns, in which frames, and that nothing undoes it.
+is required here, independent of the plan: how the tool turns, in which frames, and that nothing undoes it.
 """
 
 from __future__ import annotations
