@@ -21,6 +21,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.model.resized import resized, resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.free import deepest_free
@@ -61,6 +62,11 @@ class Deepest:
     branch: int | None = None
     beyond_cap: float = 0.0
 
+    def resized(self, factor: float) -> Deepest:
+        """The same at another size."""
+        profile = None if self.profile is None else resized_profile(self.profile, factor)
+        return Deepest(self.depth * factor, profile, self.branch, self.beyond_cap * factor)
+
 
 def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> Deepest:
     """The greatest stroke that still has zero reversals (theory §4); the hole's own depth is not looked at.
@@ -73,6 +79,10 @@ def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | No
             are straight, or free with twist rates up to `max_twist`.
     """
     settings = settings or Settings()
+    if robot.size != 1:
+        # the tolerances of the search are made for one size of arm
+        found = deepest_stroke(*resized(robot, tool, replace(hole, profile=None), settings, 1 / robot.size))
+        return found.resized(robot.size)
     straight = _Search(robot, tool, hole, settings).run()
     if settings.legs == "straight":
         return straight

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -17,9 +16,8 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JointPath, joint_path, outward_rates
 
-__all__ = ["NIL_RATE", "Evaluation", "evaluate", "event_distance", "meets_threshold", "steady_rates"]
+__all__ = ["Evaluation", "evaluate", "event_distance", "meets_threshold", "steady_rates"]
 
-NIL_RATE = float(NIL)  # [rad/m] 1e-9 deg/mm: below it a joint does not move (conventions: signature)
 SAMPLES_PER_LEG, SAMPLES_PER_SEGMENT = 200, 32  # at least
 CLOSER_LOOK = 33  # points between the neighbours of a sample where a joint comes nearest to rest
 CLOSER_LOOKS = 3  # each 16 times closer: a joint that turns round and back within 1/800,000 of a leg is seen
@@ -145,7 +143,7 @@ def _turning_points(
     x = (np.arange(k.size) - (np.cumsum(samples) - samples)[k]) / (samples[k] - 1)
     r = rates(k, x)
     for _ in range(CLOSER_LOOKS):
-        near_k, near_x = _closer_looks(k, x, np.abs(r))
+        near_k, near_x = _closer_looks(k, x, np.abs(r), robot.nil_rate)
         if not near_k.size:
             break
         k, x, r = np.append(k, near_k), np.append(x, near_x), np.concatenate([r, rates(near_k, near_x)])
@@ -155,7 +153,7 @@ def _turning_points(
     events: list[tuple[float, Event]] = []
     for i in range(6):
         # NaN, a path that touches a singularity, tells no direction either
-        signs = np.where(np.abs(r[:, i]) > NIL_RATE, np.sign(r[:, i]), 0.0)
+        signs = np.where(np.abs(r[:, i]) > robot.nil_rate, np.sign(r[:, i]), 0.0)
         moving = np.flatnonzero(signs)
         for turned in np.flatnonzero(signs[moving[:-1]] * signs[moving[1:]] < 0).tolist():
             last, n = int(moving[turned]), int(moving[turned + 1])
@@ -172,7 +170,7 @@ def _turning_points(
     return tuple(event for _, event in events), np.fmin(np.inf, np.fmin.reduce(np.abs(r), axis=0))
 
 
-def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt.NDArray[np.int64], Array]:
+def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array, nil: float) -> tuple[npt.NDArray[np.int64], Array]:
     """More samples x of segments k where a joint is slowest; speed of the samples in order, shape (N, 6)."""
     joined = (k[1:] == k[:-1])[:, None]
     before, after = np.full((2, *speed.shape), np.inf)
@@ -180,7 +178,7 @@ def _closer_looks(k: npt.NDArray[np.int64], x: Array, speed: Array) -> tuple[npt
     np.copyto(after[:-1], speed[1:], where=joined)
     # neither a joint that stands still nor one of constant speed dips, whatever their last digits do
     rise = np.fmax(before, after) - speed
-    dips = (speed <= before) & (speed <= after) & (speed > NIL_RATE) & (rise > 1e-6 * speed)
+    dips = (speed <= before) & (speed <= after) & (speed > nil) & (rise > 1e-6 * speed)
     found = np.flatnonzero(dips.any(axis=1))
     low, high = np.maximum(found - 1, 0), np.minimum(found + 1, x.size - 1)
     low, high = np.where(k[low] == k[found], low, found), np.where(k[high] == k[found], high, found)

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.evaluation import NIL_RATE
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Finding, HolePlan
 from zerorev.model.robot import Robot
@@ -22,6 +21,7 @@ from zerorev.motion import FULL_TURN, joints_along, outward_rates
 __all__ = ["LeadIn", "find_lead_in"]
 
 SAMPLES = 201  # per look
+# lengths for an arm of size 1 (`Robot.size`)
 CLOSE_ENOUGH = 1e-8  # [m] to which the end of a shortened lead-in is located
 STEP = 1e-6  # [m] down to a multiple of which it is shortened, so that the last bits of the arithmetic are not written
 KEPT = 0.75  # of the way to the trouble: at its end a joint may stand still, and the printed digits would turn it round
@@ -72,9 +72,13 @@ class _Line:
         joints = joints_along(self.robot, self.tool, self.hole, self.branch, standoff, psi)
         return np.asarray(joints + FULL_TURN * np.round((anchor - joints[0]) / FULL_TURN))
 
+    def signs(self, rates: Array) -> Array:
+        """Which way the joints move; 0 for one that does not."""
+        return np.asarray(np.where(np.abs(rates) <= self.robot.nil_rate, 0.0, np.sign(rates)))
+
     def _directions(self, length: float) -> Array:
         """Outward directions in which the joints begin the plunge, shape (6,); 0 for a joint that rests all along."""
-        signs = _signs(self.rates(self.depth - np.array([0.0, 1e-3, 1e-2]) * length))
+        signs = self.signs(self.rates(self.depth - np.array([0.0, 1e-3, 1e-2]) * length))
         # a least-travel plan may begin just where a joint stands still: then it is the leg that tells its direction
         return np.asarray(np.where(signs[0] != 0, signs[0], np.where(signs[1] != 0, signs[1], signs[2])))
 
@@ -90,7 +94,7 @@ class _Line:
             (np.isnan(joints), "{} is out of reach"),
             (np.isnan(rates), "{} comes to a singularity"),
             (steps > may_step, "{} jumps"),
-            (_signs(rates) != self.directions, "{} would turn the other way"),
+            (self.signs(rates) != self.directions, "{} would turn the other way"),
             ((joints < limits.lower) | (joints > limits.upper), "{} reaches its limit"),
         )
         firsts = [
@@ -123,23 +127,20 @@ def find_lead_in(robot: Robot, tool: Tool, plan: HolePlan, wanted: float) -> Lea
         return LeadIn(wanted, joints[-1], ())
     why = trouble.why
     # look again between the last good sample and the first bad one, until they meet: bisection, 200 parts at a time
-    while trouble is not None and trouble.sample > 0 and standoff[1] - standoff[0] > CLOSE_ENOUGH:
+    while trouble is not None and trouble.sample > 0 and standoff[1] - standoff[0] > CLOSE_ENOUGH * robot.size:
         good = trouble.sample - 1
         standoff, anchor = np.linspace(standoff[good], standoff[good + 1], SAMPLES), joints[good]
         joints = line.path(standoff, anchor)
         trouble = line.trouble(standoff, joints) or _Trouble(SAMPLES - 1, why)
     located = float(standoff[max(trouble.sample - 1, 0)] - line.depth) if trouble else 0.0
-    length = float(np.floor(KEPT * located / STEP) * STEP)
-    if length < SHORTEST:
+    step = STEP * robot.size
+    length = float(np.floor(KEPT * located / step) * step)
+    if length < SHORTEST * robot.size:
         length, first = 0.0, line.joints
     else:
         first = line.path(line.depth + np.linspace(0.0, length, SAMPLES), line.joints)[-1]
     message = f"lead-in of {length * 1e3:.3f} mm instead of {wanted * 1e3:g} mm: further back {why}"
     return LeadIn(length, first, (Finding("warning", "lead_in", message, plan.hole.id),))
-
-
-def _signs(rates: Array) -> Array:
-    return np.asarray(np.where(np.abs(rates) <= NIL_RATE, 0.0, np.sign(rates)))
 
 
 def _names(names: tuple[str, ...], broken: Array) -> list[str]:

@@ -20,6 +20,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
+from zerorev.model.resized import resized
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.cut_short import cut_short, descended, legs_swapped
@@ -61,14 +62,14 @@ def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum
         hole: what to drill; its `branch`, if any, is the only one searched; a given motion is left aside.
         settings: how; with `weights` their sum decides, else the objective.
     """
-    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    pool = _Pool(robot, tool, hole, settings)
     best = pool.best()
     return Optimum(pool.from_the_target(best), pool.as_drilled(pool.raised(best)))
 
 
 def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
     """The best motion of `optimum` alone."""
-    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    pool = _Pool(robot, tool, hole, settings)
     return pool.from_the_target(pool.best())
 
 
@@ -82,10 +83,10 @@ def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings)
             stroke found otherwise and has no reversal, the stroke is found from there.
         settings: as for `optimum`.
     """
-    pool = _Pool(robot, tool, replace(hole, profile=None), settings)
+    pool = _Pool(robot, tool, hole, settings)
     if pool.deepest.depth >= pool.hole.depth:
         return pool.as_drilled(pool.deepest)
-    found = [without_reversal(Problem(robot, tool, pool.hole, settings)), pool.free, *pool.given(hole)]
+    found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
     best = pool.order.best(one for one in found if one is not None and pool.allows(one))
     return pool.as_drilled(pool.raised(best))
 
@@ -119,13 +120,20 @@ def too_short(robot: Robot, hole: Hole) -> bool:
 
 
 class _Pool:
-    """The candidates of one hole, all of them for the hole down to the programmed corner."""
+    """The candidates of one hole, all of them for the hole down to the programmed corner, drilled by an arm of size 1.
+
+    The tolerances of the searches are made for that size. Weighted criteria are not: they count in units of their own.
+    """
 
     def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
-        self.robot, self.tool, self.settings, self.asked = robot, tool, settings, hole
+        self.size = 1.0 if settings.weights else robot.size
+        self.real = Order(robot, tool, replace(hole, profile=None), settings)
+        if self.size != 1:
+            robot, tool, hole, settings = resized(robot, tool, hole, settings, 1 / self.size)
+        self.robot, self.tool, self.settings, self.profile = robot, tool, settings, hole.profile
         corner = settings.corner
-        down = replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner)
-        self.hole = down if corner else hole
+        down = replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner, profile=None)
+        self.hole = down if corner or self.size != 1 else self.real.hole
         self.order = Order(robot, tool, self.hole, settings)
 
     @cached_property
@@ -148,9 +156,9 @@ class _Pool:
             return None
         return self.order.candidate(cut_short(found.profile, depth), found.branch)
 
-    def given(self, hole: Hole) -> list[Candidate]:
+    def given(self) -> list[Candidate]:
         """A given motion on any branch on which it could have been searched for."""
-        settings, profile = self.settings, hole.profile
+        settings, profile = self.settings, self.profile
         if profile is None or abs(profile.standoff.min() - settings.corner) > SAME_PLACE:
             return []
         kinked = settings.legs == "straight" and profile.psi.size > 3
@@ -158,7 +166,7 @@ class _Pool:
         if kinked or steep or np.abs(profile.psi).max() > (settings.psi_bound or np.inf):
             return []
         down = Profile(profile.standoff - settings.corner, profile.psi)
-        branches = range(8) if hole.branch is None else (hole.branch,)
+        branches = range(8) if self.hole.branch is None else (self.hole.branch,)
         found = [self.order.candidate(down, branch) for branch in branches]
         return [one for one in found if one is not None]
 
@@ -237,18 +245,17 @@ class _Pool:
 
     def from_the_target(self, found: Candidate | None) -> Candidate | None:
         """A motion with its stand-off counted from the hole's own target."""
-        if found is None or not self.settings.corner:
+        if found is None or (self.size == 1 and not self.settings.corner):
             return found
-        order = Order(self.robot, self.tool, self.asked, self.settings)
-        return order.candidate(self._up(found.profile), found.branch)
+        return self.real.candidate(self._up(found.profile), found.branch)
 
     def as_drilled(self, found: Deepest) -> Deepest:
         """A stroke counted from the hole's own target."""
-        depth = found.depth + self.settings.corner
-        beyond = max(found.beyond_cap + self.settings.corner, 0.0)
+        depth = (found.depth + self.settings.corner) * self.size
+        beyond = max(found.beyond_cap + self.settings.corner, 0.0) * self.size
         if found.profile is None or depth <= 0:
             return Deepest(0.0, beyond_cap=beyond)
         return replace(found, depth=depth, profile=self._up(found.profile), beyond_cap=beyond)
 
     def _up(self, profile: Profile) -> Profile:
-        return Profile(profile.standoff + self.settings.corner, profile.psi)
+        return Profile((profile.standoff + self.settings.corner) * self.size, profile.psi)

@@ -26,7 +26,9 @@ from zerorev.verify.check import verify_hole
 
 __all__ = ["lever_findings", "plan", "plan_deepest"]
 
+# lengths for an arm of size 1 (`Robot.size`)
 SHORT = 1e-3  # [m] a stroke that can be run wherever any can
+NO_OFFSET = 1e-6  # [m]
 SMALL_OFFSET = 10e-3  # [m] a wrist offset below which the spin hardly moves joints 1 to 3 (theory §1)
 
 
@@ -204,10 +206,10 @@ def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:
     """
     offset = wrist_offset(robot, tool)
     names = ", ".join(robot.joint_names[:3])
-    if offset < 1e-6:
+    if offset < NO_OFFSET * robot.size:
         message = f"the drill axis passes through the wrist centre (e = 0): spinning cannot move {names}, so it cannot"
         return (Finding("warning", "wrist_offset", message + " keep them from reversing; offset the tool", None),)
-    if offset < SMALL_OFFSET:
+    if offset < SMALL_OFFSET * robot.size:
         message = f"the wrist centre lies only {offset * 1e3:.2f} mm from the drill axis: the spin hardly moves {names}"
         return (Finding("warning", "wrist_offset", message + ", and zero reversals reach only small depths", None),)
     return ()
@@ -239,7 +241,7 @@ def _why_too_short(robot: Robot, hole: Hole) -> Finding:
 
 def _why_none(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
     """Why no stroke, however short, has zero reversals."""
-    short = replace(hole, depth=SHORT)
+    short = replace(hole, depth=SHORT * robot.size)
     if not can_run(robot, tool, short, settings):
         return _why_infeasible(robot, tool, short, settings)
     rate = (

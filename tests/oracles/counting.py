@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from zerorev.verify.measure import NIL_RATE, NIL_STEP
+from zerorev.model.robot import NIL_RATE
+from zerorev.verify.measure import NIL_STEP
 from zerorev.verify.path import Path, Track
 
 __all__ = ["reversals_of", "reversals_through"]

@@ -72,3 +72,24 @@ def random_hole(seed, *, legs="straight", narrowed=False):
         robot = replace(robot, limits=replace(limits, lower=lower, upper=lower + width))
     min_rate = float(np.deg2rad(10.0)) / size * (seed // len(ROBOTS) % 2)
     return Drilled(robot, tool, hole, Settings(min_rate=min_rate, legs=legs))
+
+
+def scaled(drilled, factor):
+    """The same hole for a robot and a tool that are greater by a factor: lengths times it, rates divided by it."""
+    arm, T, settings = drilled.robot.arm, drilled.tool.T_flange_tcp.copy(), drilled.settings
+    T[:3, 3] *= factor
+    lengths = dict(zip(arm._fields[:7], (factor * length for length in arm[:7]), strict=True))
+    shortfall = None if settings.blend_shortfall is None else settings.blend_shortfall * factor
+    return Drilled(
+        replace(drilled.robot, arm=arm._replace(**lengths)),
+        replace(drilled.tool, T_flange_tcp=T),
+        replace(drilled.hole, target=drilled.hole.target * factor, depth=drilled.hole.depth * factor),
+        replace(
+            settings,
+            min_rate=settings.min_rate / factor,
+            max_twist=settings.max_twist / factor,
+            blend=settings.blend * factor,
+            blend_shortfall=shortfall,
+            lead_in=settings.lead_in * factor,
+        ),
+    )

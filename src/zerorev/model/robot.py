@@ -11,7 +11,10 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
 
-__all__ = ["ArmGeometry", "JointLimits", "Robot"]
+__all__ = ["NIL_RATE", "ArmGeometry", "JointLimits", "Robot"]
+
+MIDDLE_REACH = 0.7  # [m] of an arm of size 1
+NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm, at this size
 
 Six = tuple[float, float, float, float, float, float]
 
@@ -87,6 +90,19 @@ class Robot:
     def reach(self) -> float:
         """Length of the stretched arm, from the shoulder to the wrist centre [m]: the size of the robot."""
         return float(self.arm.c2 + np.hypot(self.arm.a2, self.arm.c3))
+
+    @property
+    def size(self) -> float:
+        """The power of two next to the reach in 0.7 m: what a tolerance in metres, made for 0.7 m, is multiplied by.
+
+        It is 1 for an arm of 0.5 to 1 m. A power of two changes no digit of what it multiplies.
+        """
+        return float(2.0 ** round(float(np.log2(self.reach / MIDDLE_REACH))))
+
+    @property
+    def nil_rate(self) -> float:
+        """The rate up to which a joint does not move [rad/m]: 1e-9 deg/mm for an arm of 0.5 to 1 m (signature)."""
+        return NIL_RATE / self.size
 
     def __post_init__(self) -> None:
         """Check the arm's numbers."""

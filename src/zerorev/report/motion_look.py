@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from zerorev.evaluation import NIL_RATE, Evaluation, evaluate, event_distance, meets_threshold, steady_rates
+from zerorev.evaluation import Evaluation, evaluate, event_distance, meets_threshold, steady_rates
 from zerorev.model._arrays import Array
 from zerorev.model._units import deg, deg_per_mm, mm
 from zerorev.model.hole import Hole
@@ -216,5 +216,5 @@ def _too_slow(robot: Robot, score: Score, settings: Settings) -> str:
     steady = np.array(score.reversals_per_joint) == 0
     slow = [robot.joint_names[i] for i in np.flatnonzero(steady & (rates < settings.min_rate))]
     least = float(steady_rates(score, settings).min())
-    nearly = "stands still" if least <= NIL_RATE else f"moves by only {deg_per_mm(least):.2g} deg/mm"
+    nearly = "stands still" if least <= robot.nil_rate else f"moves by only {deg_per_mm(least):.2g} deg/mm"
     return f"{', '.join(slow)} {nearly}; the motion threshold is {deg_per_mm(settings.min_rate):.2g} deg/mm"

@@ -15,9 +15,9 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.criteria import compliance, manipulability, objective_of
-from zerorev.evaluation import NIL_RATE
 from zerorev.kernels.arm import flip_sign
 from zerorev.kernels.field import rates as rate_fields
+from zerorev.kernels.legs import NIL
 from zerorev.kinematics import TwistPlane, inverse, jacobian, tcp_pose, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -280,5 +280,5 @@ def _mean(rates: Array) -> Array:
 
 def turns_round(rates: Array) -> Counts:
     """How often a joint turns round along each leg, shape (n,), of rates (n, nodes)."""
-    signs = np.where(np.abs(rates) > NIL_RATE, np.sign(rates), 0.0)
+    signs = np.where(np.abs(rates) > NIL, np.sign(rates), 0.0)
     return np.asarray((signs[:, 1:] * signs[:, :-1] < 0).sum(axis=1), dtype=np.int64)

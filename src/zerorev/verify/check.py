@@ -77,7 +77,7 @@ def verify_hole(
     hole, start = hole_plan.hole, motion.joints[0]
     posture = posture_of(robot.arm, motion.joints[:1])
     asked = legs(motion.profile, samples)
-    track = Track(asked, follow(robot, tool, hole, asked, posture, start))
+    track = Track(asked, follow(robot, tool, hole, asked, posture, start), robot.nil_rate)
     turned = reversals(track)
     failures = [
         *as_asked(robot, tool, settings, hole_plan, motion),

@@ -19,7 +19,9 @@ from zerorev.verify.sound import least_room, nearest_to_limit
 
 __all__ = ["as_asked", "blend_keeps", "complete", "joints_stated", "reversals_claimed", "score_claimed"]
 
+# lengths and rates for an arm of size 1 (`Robot.size`)
 PLACE_TOLERANCE = 1e-9  # [m]
+OFFSET_TOLERANCE = 1e-6  # [m]
 JOINT_TOLERANCE = 1e-6  # [rad]; a plan file may have rounded its angles a little
 TRAVEL_TOLERANCE = 1e-6  # relative
 RATE_TOLERANCE = 0.02  # relative
@@ -58,12 +60,12 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
     """The motion must drill the hole that was asked for, on the branch that is named."""
     hole, standoff = hole_plan.hole, motion.profile.standoff
     for end, where in ((standoff[0], "starts"), (standoff[-1], "ends")):
-        if abs(end - hole.depth) > PLACE_TOLERANCE:
+        if abs(end - hole.depth) > PLACE_TOLERANCE * robot.size:
             yield f"the motion {where} at {_mm(end)} of stand-off, not at the depth of {_mm(hole.depth)}"
     corner = standoff.min()
-    if corner > PLACE_TOLERANCE:
+    if corner > PLACE_TOLERANCE * robot.size:
         yield f"the corner lies {_mm(corner)} short of the target"
-    if corner < settings.corner - PLACE_TOLERANCE:
+    if corner < settings.corner - PLACE_TOLERANCE * robot.size:
         yield f"the corner lies {_mm(-corner)} behind the target, {_mm(-settings.corner)} are allowed"
     branch = branch_of(robot.arm, motion.joints[0])
     if branch != motion.branch:
@@ -79,7 +81,7 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
     T = tool.T_flange_tcp
     wrist = T[:3, :3].T @ (np.array([0.0, 0.0, -robot.arm.c4]) - T[:3, 3])
     offset = float(np.hypot(wrist[0], wrist[1]))
-    if not abs(offset - hole_plan.wrist_offset) <= 1e-6:
+    if not abs(offset - hole_plan.wrist_offset) <= OFFSET_TOLERANCE * robot.size:
         yield f"the wrist centre is {_mm(offset)} off the drill axis, the plan says {_mm(hole_plan.wrist_offset)}"
 
 
@@ -132,13 +134,14 @@ def score_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -
     if abs(moved - score.travel) > TRAVEL_TOLERANCE * max(moved, 1e-3):
         yield f"the joints travel {np.rad2deg(moved):.6f} deg, the plan claims {np.rad2deg(score.travel):.6f}"
     slowest, mean = track.moves.slowest, mean_rates(track)
+    floor = RATE_FLOOR / robot.size
     for joint, name in enumerate(robot.joint_names):
         claimed = score.min_rate[joint]
-        if set(turned[joint]) <= {track.path.corner} and _overstated(claimed, slowest[joint]):
+        if set(turned[joint]) <= {track.path.corner} and _overstated(claimed, slowest[joint], floor):
             place = track.path.place(slowest_at(track, joint))
             yield f"{name} has a least rate of {_rate(slowest[joint])} {place}, the plan claims {_rate(claimed)}"
         claimed = score.mean_rate[joint]
-        if _overstated(claimed, mean[joint]):
+        if _overstated(claimed, mean[joint], floor):
             yield f"{name} has a mean rate of {_rate(mean[joint])} on a leg, the plan claims {_rate(claimed)}"
     room = least_room(robot, track)
     for joint, name in enumerate(robot.joint_names):
@@ -148,8 +151,8 @@ def score_claimed(robot: Robot, score: Score, track: Track, turned: Reversals) -
             yield f"{name} comes within {_deg(room[joint])} of a limit {place}, the plan claims {_deg(stated)}"
 
 
-def _overstated(claimed: float, measured: float) -> bool:
-    return bool(claimed > measured * (1 + RATE_TOLERANCE) + RATE_FLOOR)
+def _overstated(claimed: float, measured: float, floor: float) -> bool:
+    return bool(claimed > measured * (1 + RATE_TOLERANCE) + floor)
 
 
 def _times(count: int) -> str:

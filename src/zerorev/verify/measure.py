@@ -15,7 +15,6 @@ __all__ = ["Reversals", "mean_rates", "reversals", "reversals_through", "slowest
 Reversals: TypeAlias = tuple[tuple[int, ...], ...]
 
 NIL_STEP = 1e-12  # [rad]; some thousand times the rounding of an angle
-NIL_RATE = float(np.deg2rad(1e-9) * 1e3)  # [rad/m] (conventions: signature)
 WINDOW = 64  # steps among which one that moves is sought first
 
 
@@ -33,13 +32,13 @@ def reversals(track: Track) -> Reversals:
 
 def _steady_ways(track: Track) -> list[int]:
     """The way of each joint that moves the same way at every step, 1 or -1; 0 for one that needs a closer look."""
-    nil, moves = max(NIL_STEP, NIL_RATE * float(track.path_steps.max())), track.moves
+    nil, moves = max(NIL_STEP, track.nil_rate * float(track.path_steps.max())), track.moves
     return [int(least > nil) - int(most < -nil) for least, most in zip(moves.least, moves.most, strict=True)]
 
 
 def _turns(track: Track, joint: int) -> tuple[int, ...]:
     steps = np.diff(track.joints[:, joint])
-    at = np.flatnonzero(_moving(steps, track.path_steps))
+    at = np.flatnonzero(_moving(steps, track.path_steps, track.nil_rate))
     forward = steps[at] > 0
     return tuple(at[1:][forward[1:] != forward[:-1]].tolist())
 
@@ -90,15 +89,15 @@ def _seam(joint: int, one: Track, last: int | None, other: Track, first: int | N
     return [other.path.place(first)] if (before > 0) != (after > 0) else []
 
 
-def _moving(steps: Array, path_steps: Array) -> npt.NDArray[np.bool_]:
+def _moving(steps: Array, path_steps: Array, nil_rate: float) -> npt.NDArray[np.bool_]:
     """Whether a joint moves at each of some steps; a NaN step is not moving."""
-    return np.asarray(np.abs(steps) > np.maximum(NIL_STEP, NIL_RATE * path_steps))
+    return np.asarray(np.abs(steps) > np.maximum(NIL_STEP, nil_rate * path_steps))
 
 
 def _moves_within(track: Track, joint: int, begin: int, end: int) -> npt.NDArray[np.int64]:
     """The steps from one to another at which a joint moves."""
     steps = np.diff(track.joints[begin : end + 1, joint])
-    return begin + np.flatnonzero(_moving(steps, track.path_steps[begin:end]))
+    return begin + np.flatnonzero(_moving(steps, track.path_steps[begin:end], track.nil_rate))
 
 
 def _last_move(track: Track, joint: int, end: int) -> int | None:

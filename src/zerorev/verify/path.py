@@ -11,7 +11,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
+from zerorev.model.robot import NIL_RATE, Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import Posture, blocks, cos_sin, hand, solve, with_turns
 
@@ -67,10 +67,12 @@ class Track:
     Attributes:
         path: samples.
         joints: controller angles with turns [rad], shape (N, 6); NaN out of reach.
+        nil_rate: up to which a joint does not move [rad/m], that of the robot (conventions: signature).
     """
 
     path: Path
     joints: Array
+    nil_rate: float = NIL_RATE
 
     @cached_property
     def moves(self) -> Moves:
@@ -173,7 +175,7 @@ def joined(track: Track, curve: Track, before: int, behind: int) -> Track:
     legs, cut = track.path, curve.path
     corner = cut.corner + (cut.corner >= 0) + (cut.corner >= cut.psi.size)
     path = Path(join(legs.standoff, cut.standoff), join(legs.psi, cut.psi), (), corner)
-    return Track(path, join(track.joints.T, curve.joints.T).T)
+    return Track(path, join(track.joints.T, curve.joints.T).T, track.nil_rate)
 
 
 def follow(robot: Robot, tool: Tool, hole: Hole, path: Path, posture: Posture, start: Array) -> Array:

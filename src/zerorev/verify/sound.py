@@ -28,7 +28,7 @@ LIMIT_TOLERANCE = 1e-9  # [rad]
 # A jump to another posture is tens of degrees in one step, however short the step. A joint that needs more than these
 # rates over more than an isolated step has no drill feed at which it could follow: 286 deg/s at 5 mm/s.
 LEAST_JUMP = 0.01  # [rad]
-GREATEST_RATE = 1000.0  # [rad/m]
+GREATEST_RATE = 1000.0  # [rad/m] for an arm of size 1 (`Robot.size`)
 GREATEST_GAIN = 100.0  # [rad per rad of spin]
 
 
@@ -64,7 +64,7 @@ def continuity(robot: Robot, track: Track) -> Iterator[str]:
     if greatest_step(track) <= LEAST_JUMP and np.isfinite(track.extents).all():
         return
     path = track.path_steps
-    bound = LEAST_JUMP + GREATEST_RATE * path + GREATEST_GAIN * np.abs(np.diff(track.path.psi))
+    bound = LEAST_JUMP + GREATEST_RATE / robot.size * path + GREATEST_GAIN * np.abs(np.diff(track.path.psi))
     for joint, name in enumerate(robot.joint_names):
         steps = np.abs(np.diff(track.joints[:, joint]))
         worst = _greatest(steps - bound)

@@ -1,0 +1,57 @@
+"""The same drilling at another size: all lengths times a factor, all rates per length divided by it (theory §6)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+
+__all__ = ["resized", "resized_profile"]
+
+
+def resized(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, factor: float
+) -> tuple[Robot, Tool, Hole, Settings]:
+    """Robot, tool, hole and settings at another size; every motion does the same to the joints.
+
+    With a power of two as the factor no digit changes, so that an answer comes back exactly.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: what is drilled.
+        settings: how; weights of criteria are not of any size, and stay as they are.
+        factor: above 0.
+    """
+    arm, T, shortfall = robot.arm, tool.T_flange_tcp.copy(), settings.blend_shortfall
+    T[:3, 3] *= factor
+    a1, a2, b, c1, c2, c3, c4 = (length * factor for length in arm[:7])
+    return (
+        replace(robot, arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4)),
+        replace(tool, T_flange_tcp=T),
+        replace(
+            hole,
+            target=hole.target * factor,
+            depth=hole.depth * factor,
+            profile=None if hole.profile is None else resized_profile(hole.profile, factor),
+        ),
+        replace(
+            settings,
+            min_rate=settings.min_rate / factor,
+            max_twist=settings.max_twist / factor,
+            blend=settings.blend * factor,
+            blend_shortfall=None if shortfall is None else shortfall * factor,
+            lead_in=settings.lead_in * factor,
+            feed_plunge=settings.feed_plunge * factor,
+            feed_retract=settings.feed_retract * factor,
+        ),
+    )
+
+
+def resized_profile(profile: Profile, factor: float) -> Profile:
+    """The same spins at stand-offs times a factor."""
+    return Profile(profile.standoff * factor, profile.psi)
