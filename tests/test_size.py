@@ -6,10 +6,12 @@ import numba
 import numpy as np
 import pytest
 
-from oracles.holes import ROBOTS, random_hole, scaled
+from oracles.holes import ROBOTS, Drilled, random_hole, scaled
 from zerorev.depth import deepest_stroke
+from zerorev.evaluation import evaluate
 from zerorev.lead_in import find_lead_in
-from zerorev.model.resized import resized
+from zerorev.model.job import Settings
+from zerorev.model.resized import resized, resized_profile
 from zerorev.planning import plan
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="whole searches")
@@ -74,6 +76,24 @@ class TestPowersOfTwo:
         np.testing.assert_array_equal(theirs.motion.profile.standoff, mine.motion.profile.standoff * factor)
         assert theirs.score.reversals_per_joint == mine.score.reversals_per_joint
         assert theirs.score.travel == pytest.approx(mine.score.travel, rel=1e-12)
+
+
+@pytest.mark.parametrize("factor", [0.25, 8.0])
+def test_a_resized_evaluation_is_that_of_the_resized_motion(factor, robot, tool, positions):
+    """Of one that reverses, so that events are resized, too."""
+    drilled = Drilled(robot, tool, positions[0].hole, Settings())
+    other = scaled(drilled, factor)
+    held = positions[0].held_spin
+    resized_there = evaluate(*drilled.all[:3], held, 4).resized(factor)
+    there = evaluate(*other.all[:3], resized_profile(held, factor), 4)
+    assert len(there.score.events) == 6
+    for mine, theirs in zip(resized_there.score.events, there.score.events, strict=True):
+        assert (mine.joint, mine.leg) == (theirs.joint, theirs.leg)
+        assert mine.standoff == pytest.approx(theirs.standoff, abs=1e-12)
+    for name in ("reversals_per_joint", "travel", "min_rate", "mean_rate", "limit_distance"):
+        np.testing.assert_allclose(getattr(resized_there.score, name), getattr(there.score, name), rtol=1e-9, atol=1e-9)
+    np.testing.assert_array_equal(resized_there.motion.profile.standoff, there.motion.profile.standoff)
+    np.testing.assert_allclose(resized_there.motion.joints, there.motion.joints, atol=1e-12)
 
 
 class TestSize:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Event, Finding, LegName, Motion, Score
 from zerorev.model.profile import Profile
+from zerorev.model.resized import resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import JointPath, joint_path, outward_rates
@@ -37,6 +38,26 @@ class Evaluation:
     motion: Motion | None
     score: Score | None
     findings: tuple[Finding, ...]
+
+    def resized(self, factor: float) -> Evaluation:
+        """The evaluation of the same motion at another size (`model.resized`); of one that can be run.
+
+        Args:
+            factor: of the lengths; a power of two changes no digit.
+        """
+        assert self.motion is not None
+        assert self.score is not None
+        score = self.score
+        return replace(
+            self,
+            motion=replace(self.motion, profile=resized_profile(self.motion.profile, factor)),
+            score=replace(
+                score,
+                events=tuple(replace(event, standoff=event.standoff * factor) for event in score.events),
+                min_rate=score.min_rate / factor,
+                mean_rate=score.mean_rate / factor,
+            ),
+        )
 
 
 def evaluate(

@@ -247,7 +247,9 @@ class _Pool:
         """A motion with its stand-off counted from the hole's own target."""
         if found is None or (self.size == 1 and not self.settings.corner):
             return found
-        return self.real.candidate(self._up(found.profile), found.branch)
+        if self.settings.corner:
+            return self.real.candidate(self._up(found.profile), found.branch)
+        return self.real.judged(self._up(found.profile), found.branch, found.evaluation.resized(self.size))
 
     def as_drilled(self, found: Deepest) -> Deepest:
         """A stroke counted from the hole's own target."""
