@@ -192,6 +192,15 @@ class TestCheck:
         assert rejected.level == "warning"
         assert "0 reversals was found, but does not pass the check: A4 jumps" in rejected.message
 
+    def test_nor_is_a_deepest_stroke_stated_that_does_not_pass(self):
+        robot, tool, hole, settings = case("zero_missed_20004")
+        answer = plan_deepest(robot, tool, hole, settings)
+        assert (answer.status, answer.score.reversals) == ("planned", 0)
+        assert answer.verified.passed
+        assert answer.hole.depth == answer.deepest < deepest_as_drilled(robot, tool, hole, settings).depth
+        (rejected,) = [finding for finding in answer.findings if finding.kind == "rejected"]
+        assert "a deeper motion without a reversal was found, but does not pass the check: A4" in rejected.message
+
     def test_the_next_best_that_passes_is_taken_and_none_if_none_does(self, robot, tool, positions, monkeypatch):
         sound, refused = planning.verify_hole, []
 

@@ -20,12 +20,14 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.optimum import LEAST_STROKE, alternatives, deepest_as_drilled, optimum, too_short
+from zerorev.search.cut_short import cut_short
 from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
 
 __all__ = ["lever_findings", "plan", "plan_deepest"]
 
+SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
 # lengths for an arm of size 1 (`Robot.size`)
 SHORT = 1e-3  # [m] a stroke that can be run wherever any can
 NO_OFFSET = 1e-6  # [m]
@@ -76,9 +78,25 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         findings = _why_none(robot, tool, hole, settings)
         answer = HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
         return _with_deepest(answer, settings, deepest)
-    hole = replace(hole, depth=deepest.depth)
-    best = Order(robot, tool, hole, settings).candidate(deepest.profile, deepest.branch)
-    return _with_deepest(_planned(robot, tool, hole, settings, best), settings, deepest)
+    why = None
+    for share in SHARES:
+        shorter = replace(hole, depth=share * deepest.depth)
+        order = Order(robot, tool, shorter, settings)
+        cut = order.candidate(cut_short(deepest.profile, shorter.depth), deepest.branch)
+        answer = _answered(robot, tool, shorter, settings, "planned", cut)
+        if answer.verified is not None and answer.verified.passed:
+            found = () if why is None else (_rejected("a deeper motion without a reversal", why, hole),)
+            answer = replace(answer, findings=(*answer.findings, *found))
+            return _with_deepest(answer, settings, replace(deepest, depth=shorter.depth))
+        why = why or (answer.verified.failures[0] if answer.verified else "it cannot be run")
+    message = f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
+    findings = (Finding("error", "verification", message, hole.id),)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings, deepest=0.0)
+
+
+def _rejected(what: str, why: str, hole: Hole) -> Finding:
+    """That something better was found which does not pass the check."""
+    return Finding("warning", "rejected", f"{what} was found, but does not pass the check: {why}", hole.id)
 
 
 def _planned(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: Candidate | None) -> HolePlan:
@@ -91,8 +109,7 @@ def _planned(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: Can
         tried = _answered(robot, tool, hole, settings, "planned", other)
         if tried.verified is not None and tried.verified.passed:
             assert answer.score is not None
-            message = f"a motion with {answer.score.reversals} reversals was found, but does not pass the check: {why}"
-            rejected = Finding("warning", "rejected", message, hole.id)
+            rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, hole)
             return replace(tried, findings=(*tried.findings, rejected))
     message = f"no motion was found that passes the check; of the best one: {why}"
     findings = (Finding("error", "verification", message, hole.id),)
