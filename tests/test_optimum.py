@@ -84,7 +84,7 @@ class TestCases:
 
 class TestAgreement:
     def test_on_some_random_holes(self):
-        for seed in range(4):
+        for seed in (0, 3):
             check_agreement(random_hole(seed, narrowed=seed % 4 == 3))
 
     @pytest.mark.long
@@ -212,7 +212,7 @@ class TestCheck:
 
             return refuse
 
-        hole = positions[0].hole
+        hole = replace(positions[0].hole, branch=4)  # one branch, so that there are few others
         monkeypatch.setattr(planning, "verify_hole", verify(2))
         second = plan(robot, tool, hole)
         assert (second.status, second.score.reversals, second.verified.passed) == ("planned", 0, True)
@@ -257,7 +257,7 @@ class TestCheck:
 
 
 class TestLeadIn:
-    @pytest.mark.parametrize("seed", [1, 2, 9])
+    @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 9))])
     def test_kept_whole_where_it_is_asked_for(self, seed):
         """By default it is shortened at these holes; and plan and deepest stroke agree here, too."""
         drilled = random_hole(seed)
