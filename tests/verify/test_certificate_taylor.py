@@ -17,13 +17,13 @@ def exact():
         yield
 
 
-def random_model(rng, middle, spread):
-    """Models about a middle, with linear and quadratic terms of some spread and a rest."""
+def random_model(rng, middle, spread, rest=0.0, *, bent=True):
+    """Models about a middle, with linear and quadratic terms of some spread."""
     terms = no_terms(COLUMNS)
     terms[0] = rng.uniform(-spread, spread, (VARIABLES, COLUMNS))
-    square = rng.uniform(-spread, spread, (VARIABLES, VARIABLES, COLUMNS)) * spread
+    square = rng.uniform(-spread, spread, (VARIABLES, VARIABLES, COLUMNS)) * spread * bent
     terms[1:] = square + square.swapaxes(0, 1)
-    return Taylor.polynomial(middle + rng.uniform(-0.3, 0.3, COLUMNS), terms, spread**3)
+    return Taylor.polynomial(middle + rng.uniform(-0.3, 0.3, COLUMNS), terms, rest)
 
 
 def point(rng, *, on_the_edge):
@@ -67,11 +67,12 @@ OPERATIONS = {
 
 
 @pytest.mark.parametrize("name", OPERATIONS)
-@pytest.mark.parametrize("spread", [1e-9, 1e-3, 0.04])
-def test_what_is_computed_holds_everywhere(name, spread):
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize(("spread", "rest"), [(1e-9, 0.0), (1e-3, 1e-9), (0.04, 0.0), (0.04, 1e-3)])
+def test_what_is_computed_holds_everywhere(name, spread, rest, bent):
     model_of, ball_of = OPERATIONS[name]
     rng = np.random.default_rng(7)
-    a, b = random_model(rng, 1.4, spread), random_model(rng, 1.9, spread)
+    a, b = (random_model(rng, middle, spread, rest, bent=bent) for middle in (1.4, 1.9))
     answer = model_of(a, b)
     for k in range(30):
         x, column = point(rng, on_the_edge=k % 2 == 0), k % COLUMNS

@@ -18,6 +18,7 @@ from zerorev.verify.certificate_legs import planned_motion
 from zerorev.verify.certificate_misplaced import moved
 from zerorev.verify.certificate_piece import ball_arithmetic
 from zerorev.verify.certificate_placed import Pieces, placed
+from zerorev.verify.certificate_tolerance import Tolerated
 from zerorev.verify.certificate_within import (
     RATIO,
     certify_plan_again,
@@ -168,22 +169,46 @@ def rates_at(setting, arc, t):
     return [rate[0] for rate in rates(setting, body_at(setting, pose), twist)]
 
 
+def test_the_blends_are_in_it(planned):
+    """A blend that runs the wrong way decides; with the right one there is something left."""
+    hole_plan, robot, within = planned.holes[0], planned.robot, Within(1e-5, 1e-5)
+    with ball_arithmetic():
+        setting = Setting(robot.arm, posture_of(robot.arm, hole_plan.motion.joints[0]))
+        motion = planned_motion(robot.arm, planned.tool, hole_plan.hole, hole_plan.motion.profile, 1e-3)
+        arc = motion.blends[0].arc
+        turns = tuple(turn._replace(angle=(turn.angle[0], -turn.angle[1], -turn.angle[2])) for turn in arc.turns)
+        wrong = motion._replace(blends=[motion.blends[0]._replace(arc=arc._replace(turns=turns))])
+        ends = hole_plan.motion.joints[[0, -1]]
+        kept, lost = (Tolerated(robot, setting, each, ends, np.eye(4)).margin(within) for each in (motion, wrong))
+    assert kept.share > 0.9
+    assert lost.share < 0
+    assert lost.cause.arc == len(motion.legs)
+
+
 # --- what is not ------------------------------------------------------------------------------------------------------
 
 
-def test_a_limit_decides(planned):
-    """A limit put a tenth of a degree beyond where a joint ends: the tolerance ends where the limit is passed."""
-    hole_plan, robot = planned.holes[0], planned.robot
-    joints = hole_plan.motion.joints
-    upper = robot.limits.upper.copy()
-    upper[3] = joints[[0, -1], 3].max() + np.deg2rad(0.1)
-    narrow = replace(planned, robot=replace(robot, limits=replace(robot.limits, upper=upper)))
-    score = replace(hole_plan.score, limit_distance=np.minimum(hole_plan.score.limit_distance, np.deg2rad(0.1)))
-    hole_plan = certified(narrow.robot, narrow.tool, narrow.settings, replace(hole_plan, score=score))
-    tolerance = largest_within(narrow.robot, narrow.tool, narrow.settings, narrow.T_base_part, hole_plan)
-    assert "A4 is" in tolerance.decides
-    assert "beyond its limits" in tolerance.decides
-    hold_to_frames(narrow, hole_plan, narrow.T_base_part, tolerance, np.random.default_rng(0))
+def with_room(plan, hole_plan, joint, room):
+    """The plan with a limit so much beyond the angles of one joint [rad]; of one hole."""
+    limits = plan.robot.limits
+    upper = limits.upper.copy()
+    upper[joint] = hole_plan.motion.joints[[0, -1], joint].max() + room
+    robot = replace(plan.robot, limits=replace(limits, upper=upper))
+    score = replace(hole_plan.score, limit_distance=np.minimum(hole_plan.score.limit_distance, room))
+    return replace(
+        plan, robot=robot, holes=(certified(robot, plan.tool, plan.settings, replace(hole_plan, score=score)),)
+    )
+
+
+def test_a_limit_decides(planned, modest):
+    """The tolerance ends where a limit is passed; also on another turn, as A6 at 217 deg in the published plan."""
+    for hole_plan, joint, room in ((planned.holes[0], 3, 0.1), (modest(1), 5, 0.02)):
+        narrow = with_room(planned, hole_plan, joint, np.deg2rad(room))
+        rest = narrow.robot, narrow.tool, narrow.settings, narrow.T_base_part
+        tolerance = largest_within(*rest, narrow.holes[0])
+        assert f"A{joint + 1} is" in tolerance.decides
+        assert "beyond its limits" in tolerance.decides
+        hold_to_frames(narrow, narrow.holes[0], narrow.T_base_part, tolerance, np.random.default_rng(0))
 
 
 def test_a_joint_that_stands_still_where_it_is_modelled(kuka, drill, modest, settings):
