@@ -21,7 +21,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Measures, Score, V
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.motion import joint_path
+from zerorev.motion import joints_along, sample_distances
 
 __all__ = [
     "CRITERIA",
@@ -191,8 +191,11 @@ def measure(robot: Robot, tool: Tool, hole: Hole, evaluation: Evaluation, settin
     assert score is not None
     profile, limits, steady = motion.profile, robot.limits, steady_rates(score, settings)
     plunge = slice(profile.corner)
-    joints = joint_path(robot, tool, hole, profile, motion.branch, samples=SAMPLES).joints
-    axial, lateral = compliance(jacobian(robot, tool, joints), settings.joint_stiffness, hole.direction)
+    points = profile.at(sample_distances(profile, SAMPLES))
+    joints = joints_along(robot, tool, hole, motion.branch, *points)
+    axial = lateral = np.full(1, np.nan)
+    if settings.joint_stiffness is not None:
+        axial, lateral = compliance(jacobian(robot, tool, joints), settings.joint_stiffness, hole.direction)
     return Measures(
         travel=score.travel,
         margin=float(steady.min()) if steady.size else 0.0,

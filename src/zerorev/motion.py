@@ -21,6 +21,7 @@ from zerorev.model.tool import Tool
 
 __all__ = [
     "JUMP",
+    "SAMPLES",
     "JointPath",
     "choose_turns",
     "joint_path",
@@ -31,6 +32,7 @@ __all__ = [
 ]
 
 JUMP = 0.5  # [rad] a joint step between neighbouring samples that no drilling motion makes: the thesis' B_jump
+SAMPLES = 1000  # steps of a motion, about: so close that a jump to another posture shows
 FULL_TURN = 2 * np.pi
 
 
@@ -141,7 +143,7 @@ def joint_path(
     branch: int,
     *,
     near: tuple[float, ...] | None = None,
-    samples: int = 1000,
+    samples: int = SAMPLES,
     through: Sequence[float] = (),
 ) -> JointPath:
     """The joints along a motion on one branch (thesis eq. 3.20, 4.5), turns chosen for the whole path.
