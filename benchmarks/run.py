@@ -22,7 +22,9 @@ from benchmarks.parts import (
     map_scaling,
     maps,
     optimum,
+    panel,
     parameter_map,
+    plan,
     start,
     swarm,
     tolerance,
@@ -43,6 +45,8 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "tolerance": tolerance.run,
     "start": start.run,
     "job": job.run,
+    "plan": plan.run,
+    "panel": panel.run,
     "holes": holes.run,
 }
 PEERS = ("numpy", "numba", "scipy", "pymoo", "EAIK", "py-opw-kinematics", "python-flint")
@@ -54,7 +58,7 @@ def main() -> int:
     asked = _arguments()
     folder = asked.out / "quick" if asked.quick else asked.out
     full = Options(seeds=asked.seeds, holes=asked.holes, peer_seeds=asked.peer_seeds, cells=asked.cells)
-    options = replace(Options.quick() if asked.quick else full, folder=folder, workers=asked.workers)
+    options = replace(Options.quick() if asked.quick else full, folder=folder, workers=asked.workers, old=asked.old)
     for name in asked.parts or PARTS:
         print(f"--- {name}", flush=True)
         section = PARTS[name](options)
@@ -77,6 +81,9 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--peer-seeds", type=int, default=Options.peer_seeds, help="of each random peer at each hole")
     parser.add_argument("--workers", type=int, help="processes that the holes are shared out over; one a core")
     parser.add_argument("--cells", type=int, default=Options.cells, help="of the great map; 1,000,000 is all of it")
+    parser.add_argument(
+        "--old", type=Path, help="a git worktree of an older commit, measured beside in `plan`, `panel`"
+    )
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "bench", help="folder for the JSON files")
     parser.add_argument("--page", type=Path, default=ROOT / "docs" / "benchmarks.md", help="the page that is written")
     asked = parser.parse_args()

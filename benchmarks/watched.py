@@ -6,7 +6,7 @@ import json
 import subprocess
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -72,12 +72,16 @@ class _Look:
         self.cost = replace(now, **{name: max(getattr(now, name), getattr(self.cost, name)) for name in peaks})
 
 
-def watched(command: Sequence[str], log: Path) -> Cost:
+def watched(
+    command: Sequence[str], log: Path, *, environment: Mapping[str, str] | None = None, codes: Container[int] = (0,)
+) -> Cost:
     """Run a command to its end, and tell what it cost, together with earlier runs of it that were broken off.
 
     Args:
         command: which goes on where it was when it is run again; where it came to its end it is not.
         log: file in which the cost is kept on the way; where it is there already, it is added to.
+        environment: of the command; None: this process' own.
+        codes: with which it may end.
 
     Raises:
         RuntimeError: the command fails.
@@ -87,7 +91,7 @@ def watched(command: Sequence[str], log: Path) -> Cost:
         return before
     look, looks = _Look(), 0
     with tempfile.TemporaryFile("w+") as said:
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said)
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said, env=environment)
         try:
             root = psutil.Process(process.pid)
             while process.poll() is None:
@@ -101,9 +105,9 @@ def watched(command: Sequence[str], log: Path) -> Cost:
             process.terminate()
             process.wait()
         total = _sum(before, replace(look.cost, seconds=time.perf_counter() - look.began))
-        total = replace(total, finished=process.returncode == 0)
+        total = replace(total, finished=process.returncode in codes)
         write_text(log, json.dumps(asdict(total)))
-        if process.returncode:
+        if process.returncode not in codes:
             said.seek(0)
             raise RuntimeError(f"{' '.join(command)} ends with {process.returncode}: {said.read().strip()[-500:]}")
     return total

@@ -13,16 +13,21 @@ import pytest
 from benchmarks import arm_numpy, scorer
 from benchmarks.box import content, thinned, write_map_file
 from benchmarks.cases import Answer, Case, drilled, mirrored, random_place
+from benchmarks.panel import BULGE, write_panel
 from benchmarks.parts import Options
 from benchmarks.peers.objective import NumbaObjective, NumpyObjective, graded
 from benchmarks.peers.swarm import BOUND, swarm
+from benchmarks.states import NEW, OLD, planners
 from benchmarks.table import Goal, Section, load, page, save
 from benchmarks.timing import duration, in_turns
 
 from zerorev import kinematics
 from zerorev.evaluation import evaluate
+from zerorev.model.files import read_job
+from zerorev.model.hole import Hole
 from zerorev.model.map_file import read_map_file
 from zerorev.model.profile import Profile
+from zerorev.planning import plan
 
 
 @pytest.fixture
@@ -289,6 +294,45 @@ class TestWatched:
         assert asdict(total) == json.loads(log.read_text())
         assert total.finished > first["finished"]
         assert watched(["no such command"], log) == total
+
+
+class TestPanel:
+    def test_is_a_job_of_holes_along_the_normals_of_a_sheet(self, tmp_path):
+        job = read_job(write_panel(tmp_path, 300, seed=4, spindle_rpm=900))
+        assert (len(job.holes), job.settings.spindle_rpm) == (300, 900)
+        R, place = job.T_base_part[:3, :3], job.T_base_part[:3, 3]
+        centre = place - BULGE * 1e-3 * R[:, 2]
+        for hole in job.holes:
+            inwards = centre - hole.target
+            assert np.linalg.norm(inwards) == pytest.approx(BULGE * 1e-3, abs=1e-6)
+            assert hole.direction @ inwards == pytest.approx(BULGE * 1e-3, abs=1e-6)
+        text = (tmp_path / "panel.csv").read_text()
+        write_panel(tmp_path, 300, seed=4)
+        assert (tmp_path / "panel.csv").read_text() == text
+        write_panel(tmp_path, 300, seed=5)
+        assert (tmp_path / "panel.csv").read_text() != text
+
+
+class TestStates:
+    def test_a_planner_is_of_its_checkout_and_answers_what_plan_does(self, robot, tool, tmp_path):
+        hole = {"id": "hole", "target_mm": [500, 300, 800], "direction": [1, 0, 0], "depth_mm": 50}
+        job = {"robot": robot.name, "tool": "thesis_drill", "holes": [hole], "no_such_key": 1}
+        with planners(None) as states:
+            answer = states[NEW](job)
+            assert list(states) == [NEW]
+        planned = plan(robot, tool, Hole("hole", np.array([0.5, 0.3, 0.8]), np.array([1.0, 0.0, 0.0]), 0.05))
+        assert answer["depth_mm"] == planned.deepest * 1e3
+        assert (answer["reversals"], answer["passed"]) == (0, True)
+        assert 0 < answer["seconds"] < 600
+
+    def test_an_older_state_is_imported_from_its_own_folder(self, tmp_path):
+        package = tmp_path / "src" / "zerorev"
+        package.mkdir(parents=True)
+        (package / "__init__.py").write_text("raise SystemExit(3)")
+        with planners(tmp_path) as states:
+            assert list(states) == [NEW, OLD]
+            with pytest.raises(RuntimeError, match="ended before its time"):
+                states[OLD]({})
 
 
 @pytest.mark.long
