@@ -227,7 +227,7 @@ def test_the_blends_at_other_breakpoints_are_looked_at_too(check, kuka, drill, b
     cut = Profile(*plan.motion.profile.at(np.array([0.0, 0.02, 0.05, 0.08, 0.1])))
     five = build(kuka, drill, plan.hole, cut, plan.motion.joints[0])
     assert check(five, blend=0.01).passed
-    assert [check(five, blend=blend).blend_samples for blend in (0.01, 0.0)] == [12_000, 8_000]
+    assert [check(five, blend=blend).blend_samples for blend in (0.01, 0.0)] == [6_000, 2_000]
     upper = kuka.limits.upper.copy()
     upper[4] = five.motion.joints[3, 4] - 1e-3  # A5 rises all along
     failures = verify_hole(replace(kuka, limits=replace(kuka.limits, upper=upper)), drill, Settings(), five).failures

@@ -28,7 +28,8 @@ from zerorev.verify.sound import continuity, greatest_step, least_room, limit_di
 
 __all__ = ["known_as_checked", "subject", "verify_hole", "verify_plan"]
 
-SAMPLES, BLEND_SAMPLES = USUAL = 40_000, 4_000  # on the two legs, on each blend
+SAMPLES, BLEND_SAMPLES = USUAL = 40_000, 4_000  # on the two legs, on the blended corner
+PASSING = 4  # a blend within a leg is so many times shorter of samples: it bends less, and is still finer than the legs
 
 
 def verify_plan(plan: Plan) -> Plan:
@@ -64,7 +65,7 @@ def verify_hole(
         settings: blend, corner and bounds as planned.
         hole_plan: what is claimed.
         samples: points on the two legs.
-        blend_samples: points on the blended corner.
+        blend_samples: points on the blended corner; a blend within a leg has a quarter of them.
 
     Returns:
         What was looked at, and one sentence for each claim that does not hold.
@@ -85,16 +86,17 @@ def verify_hole(
         *reversals_claimed(robot, score, track, turned),
         *score_claimed(robot, score, track, turned),
     ]
-    looked_at = [("", track)]
+    looked_at, on_blends = [("", track)], 0
     for k, radius in _blends(motion.profile, settings):
         at_corner = k == motion.profile.corner
         where = "in the blended corner, " if at_corner else f"in the blend at breakpoint {k + 1}, "
-        curve = blend(motion.profile, k, radius, blend_samples)
+        curve = blend(motion.profile, k, radius, blend_samples if at_corner else blend_samples // PASSING)
         before, behind = around(track, k, curve)
         joints = follow(robot, tool, hole, curve, posture, track.joints[before])
         piece = joined(track, Track(curve, joints), before, behind)
         failures += blend_keeps(robot, where, turned, reversals_through(track, turned, piece, before, behind))
         looked_at.append((where, piece))
+        on_blends += curve.psi.size
 
     figures = []
     for where, piece in looked_at:
@@ -111,7 +113,7 @@ def verify_hole(
     return Verification(
         passed=not failures,
         samples=asked.standoff.size,
-        blend_samples=blend_samples * (len(looked_at) - 1),
+        blend_samples=on_blends,
         reversals_per_joint=tuple(map(len, turned)),
         max_position_error=max(position_error),
         max_rotation_error=max(rotation_error),
