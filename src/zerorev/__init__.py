@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from zerorev.model.tool import Tool
     from zerorev.planning import plan, plan_deepest
     from zerorev.program.export import export
+    from zerorev.restated import check_plan
     from zerorev.verify.check import verify_plan
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "Settings",
     "Tool",
     "ZerorevError",
+    "check_plan",
     "deepest_stroke",
     "evaluate",
     "export",
@@ -75,6 +77,7 @@ _HOMES = {
     "model.tool": ("Tool",),
     "planning": ("plan", "plan_deepest"),
     "program.export": ("export",),
+    "restated": ("check_plan",),
     "verify.check": ("verify_plan",),
 }  # fmt: skip
 

@@ -156,4 +156,6 @@ def _turning_points(
         leg: LegName = "plunge" if segment < profile.corner else "retract"
         where: LegName = "target" if place == 0.0 and segment == profile.corner else leg
         found.append((segment, place, Event(int(joint), where, float(start + place * (end - start)))))
+        if place > 0.0:  # to turn round within a segment a joint has to stop
+            slowest[int(joint) - 1] = 0.0
     return found, slowest

@@ -72,9 +72,9 @@ class JointPath:
 def sample_distances(profile: Profile, samples: int, through: Sequence[float] = ()) -> Array:
     """About `samples` path distances [m], evenly spread, with the breakpoints and all of `through` among them."""
     knots = profile.distance
-    parts = [
-        np.linspace(a, b, max(2, int(np.ceil(samples * (b - a) / knots[-1])) + 1))[:-1] for a, b in pairwise(knots)
-    ]
+    # rounding must not add a sample: whoever computes a figure again looks at the same points
+    counts = [max(2, int(np.ceil(samples * (b - a) / knots[-1] - 1e-9)) + 1) for a, b in pairwise(knots)]
+    parts = [np.linspace(a, b, count)[:-1] for (a, b), count in zip(pairwise(knots), counts, strict=True)]
     return np.sort(np.concatenate([*parts, knots[-1:], np.array(through)]))
 
 

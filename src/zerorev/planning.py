@@ -25,7 +25,7 @@ from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import verify_hole
 
-__all__ = ["lever_findings", "plan", "plan_deepest"]
+__all__ = ["lever_findings", "motion_findings", "plan", "plan_deepest"]
 
 SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
 # lengths for an arm of size 1 (`Robot.size`)
@@ -140,7 +140,7 @@ def _answered(
     )
     verified = verify_hole(robot, tool, settings, answer)
     answer = replace(answer, verified=verified)
-    return replace(answer, findings=_findings(robot, settings, answer))
+    return replace(answer, findings=motion_findings(robot, settings, answer))
 
 
 def _evaluated(robot: Robot, tool: Tool, hole: Hole, settings: Settings, profile: Profile) -> HolePlan:
@@ -174,7 +174,7 @@ def _critical_rates(robot: Robot, tool: Tool, hole: Hole, profile: Profile, bran
     return critical(robot, tool, hole, branch, profile.psi[corner], standoff=profile.standoff[corner]).kappa
 
 
-def _findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
+def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
     """What a user should know of a motion that can be run."""
     score, hole = answer.score, answer.hole
     assert score is not None

@@ -399,7 +399,7 @@ def test_a_plan_file_reads_well(tmp_path: Path) -> None:
         ("100.0, 0.0, 65.0", "100.0, 0.0, NaN", ["NaN is not a number", "finite"]),
         ("100.0, 0.0, 65.0", "100.0, 0.0, 1e999", ["not a finite number"]),
         ("50.0, 0.0, 50.0", "50.0, 0.0", ["holes[0].standoff_mm (hole '7')", "2 entries"]),
-        ("50.0, 0.0, 50.0", "50.0, 0.0, 20.0, 50.0", ["holes[0] (hole 7)", "standoff_mm, psi_deg", "contradicts"]),
+        ("50.0, 0.0, 50.0", "50.0, 0.0, 20.0, 50.0", ["holes[0] (hole 7)", "psi_deg", "contradicts"]),
         ('"branch": 0', '"branch": null', ["holes[0] (hole 7)", "some are null", "all or none"]),
         ('"travel_deg": 57.2', '"travel": 57.2', ["unknown key 'travel'", "did you mean 'travel_deg'"]),
         ('"reversals": 0', '"reversals": 2', ["holes[0] (hole 7), reversals", "contradicts"]),

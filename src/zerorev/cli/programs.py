@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +32,11 @@ def check(
     tolerance_ratio: float | None = None,
     json: bool = False,
 ) -> int:
-    """Check a plan anew, from the robot, the tool and the holes that it states.
+    """Check a plan again, from the robot, the tool and the holes that it states.
+
+    Every motion is followed, and every figure that the file states is computed again; one that differs is an error that
+    names it, with the value stated and the value found. A certificate is not proven again without --certify, and not
+    shown.
 
     Args:
         plan: The plan file (JSON).
@@ -62,30 +67,32 @@ def check(
     if certify and program is None:
         check_file(plan)
     text = read_text(plan, PLAN_FILE)
-    stated = answer = plan_from_text(text, str(plan))
+    stated = plan_from_text(text, str(plan))
     if program is not None:
         from zerorev.program.read_back import read_program
 
         written = read_program(program)
 
-    from zerorev.verify import verify_plan
+    from zerorev.jobs import workers_for
+    from zerorev.restated import check_plan, without_proofs
 
-    with terminal.busy("checking"):
-        answer = verify_plan(answer)
-    if _passed(stated) <= _passed(answer):
+    with terminal.progress("checking", len(stated.holes)) as progress:
+        checked = check_plan(stated, workers=workers_for(len(stated.holes), None), progress=progress)
+    if not checked.wrong and _passed(stated) <= _passed(checked.plan):
         remember(text)
     if program is not None:
         from zerorev.program.as_exported import as_exported
         from zerorev.verify.certificate_program import certify_program
 
         with terminal.busy("proving"):
-            drilled = as_exported(answer, written, program.stem)
-            answer = certify_program(answer, written, drilled)
+            drilled = as_exported(checked.plan, written, program.stem)
+            checked = replace(checked, plan=certify_program(checked.plan, written, drilled))
     elif certify:
         with terminal.busy("proving"):
-            answer = asked.certified(answer)
-        write_plan(answer, plan)
+            checked = replace(checked, plan=asked.certified(checked.plan))
+        write_plan(checked.marked(rewritten=True), plan)
         remember(read_text(plan, PLAN_FILE))
+    answer = checked.marked() if certify else without_proofs(checked.marked())
     if json and program is not None:
         terminal.print_json(_proofs(plan_to_json(answer), written.name))
     elif json:

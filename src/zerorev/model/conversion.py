@@ -153,24 +153,26 @@ def settings_data(settings: Settings) -> dict[str, Any]:
 def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_part: Array) -> Hole:
     """The hole of a job in the base frame, its spin counted from the job's reference.
 
-    One without a depth has a nominal one, and no given motion.
+    One without a depth has a nominal one, and no given motion. Its numbers are those that a plan file will hold, to the
+    last digit, so that what is found for the hole of the job is found again for that of the file.
 
     Raises:
         InputError: a direction of zero length, a reference along the drill axis, a given motion that is none.
     """
     where, R = f"hole {form.id}", T_base_part[:3, :3]
-    depth_mm = form.depth_mm or NOMINAL_DEPTH_MM
-    target = T_base_part[:3, 3] + R @ m(form.target_mm)
-    direction = unit(R @ unit(form.direction, f"{where}, direction"), where)
+    depth_mm = plain(form.depth_mm or NOMINAL_DEPTH_MM)
+    target = m(plain(mm(T_base_part[:3, 3] + R @ m(form.target_mm))))
+    direction = np.array(plain(unit(R @ unit(form.direction, f"{where}, direction"), where)))
     vector = reference if isinstance(reference, str) else np.array(reference)
     with inside(where):
-        profile = None if form.depth_mm is None else given_profile(form.standoff_mm, form.psi_deg, depth_mm)
+        given = plain(form.standoff_mm), plain(form.psi_deg)
+        profile = None if form.depth_mm is None else given_profile(*given, depth_mm)
     return Hole(
         id=form.id,
         target=target,
         direction=direction,
         depth=float(m(depth_mm)),
-        psi_zero=psi_zero_vector(vector, target, direction, tool, T_base_part, where),
+        psi_zero=np.array(plain(psi_zero_vector(vector, target, direction, tool, T_base_part, where))),
         profile=profile,
         branch=form.branch,
     )

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.model._arrays import Array
+from zerorev.model._arrays import UNIT_TOLERANCE, Array
 from zerorev.model._units import m, rad, rad_per_m
 from zerorev.model.conversion import (
     frame_from,
@@ -33,7 +34,7 @@ from zerorev.model.plan import (
     Verification,
     Within,
 )
-from zerorev.model.plan_data import MOTION, RPM, SCORE
+from zerorev.model.plan_data import MOTION, RPM, SCORE, twist_spread
 from zerorev.model.plan_schema import (
     BaselineForm,
     CertificateForm,
@@ -102,13 +103,16 @@ def answer_from(form: PlanHole | DepthHole, where: str) -> HolePlan:
     if isinstance(form, PlanHole):
         return _hole_plan_from(form, where)
     with inside(where):
-        _agree(form.id == form.plan.id, "id, plan.id")
-        _agree(form.deepest_mm == form.plan.deepest_mm, "deepest_mm, plan.deepest_mm")
+        _agree("id", form.id, form.plan.id)
+        _agree("deepest_mm", form.deepest_mm, form.plan.deepest_mm)
     return _hole_plan_from(form.plan, f"{where}, plan")
 
 
 def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
     with inside(where):
+        for name, vector in (("direction", form.direction), ("psi_zero", form.psi_zero)):
+            length = float(np.linalg.norm(vector))
+            _agree(f"{name}, its length", length, 1.0, UNIT_TOLERANCE)
         given = form.given or GivenForm(standoff_mm=None, psi_deg=None, branch=None)
         hole = Hole(
             id=form.id,
@@ -132,13 +136,16 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             certified_within=_within_from(form.certified_within) if form.certified_within else None,
             measures=_measures_from(form.criteria) if form.criteria else None,
             deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
-            critical_rates=_critical_from(form.critical_rates_deg_per_mm),
+            critical_rates=_critical_from(form),
         )
 
 
-def _agree(ok: bool, name: str) -> None:
-    if not ok:
-        raise InputError("contradicts the fields beside it", where=name, accepted="a plan file as zerorev wrote it")
+def _agree(name: str, stated: Any, found: Any, tolerance: float = 0.0) -> None:
+    """A field must be what it has to be beside the others."""
+    if stated == found or (isinstance(found, float) and isinstance(stated, float) and abs(stated - found) <= tolerance):
+        return
+    what = f"contradicts the fields beside it: stated {json.dumps(stated)}, found {json.dumps(found)}"
+    raise InputError(what, where=name, accepted="a plan file as zerorev wrote it")
 
 
 def _motion_from(form: PlanHole) -> Motion | None:
@@ -146,10 +153,11 @@ def _motion_from(form: PlanHole) -> Motion | None:
         case [None, None, None, None]:
             return None
         case [int(branch), list(standoff_mm), list(psi_deg), JointsDegForm() as joints]:
-            _agree(len(standoff_mm) == len(psi_deg) == len(joints.breakpoints), "standoff_mm, psi_deg, joints_deg")
+            for name, entries in (("psi_deg", psi_deg), ("joints_deg.breakpoints", joints.breakpoints)):
+                _agree(f"{name}, its entries", len(entries), len(standoff_mm))
             profile = Profile(m(standoff_mm), rad(psi_deg))
             for name, i in (("start", 0), ("target", profile.corner), ("end", -1)):
-                _agree(getattr(joints, name) == joints.breakpoints[i], f"joints_deg.{name}")
+                _agree(f"joints_deg.{name}", getattr(joints, name), joints.breakpoints[i])
             return Motion(profile, branch, rad(joints.breakpoints))
     raise InputError("some are null", where=", ".join(MOTION), accepted="all or none of them null")
 
@@ -159,7 +167,7 @@ def _score_from(form: PlanHole) -> Score | None:
         case [None, None, None, None, None, None, None]:
             return None
         case [int(count), list(counts), list(events), float(travel_deg), list(least), list(mean), list(distance)]:
-            _agree(count == sum(counts), "reversals")
+            _agree("reversals", count, sum(counts))
             return Score(
                 reversals_per_joint=tuple(counts),
                 events=tuple(Event(event.joint, event.leg, float(m(event.standoff_mm))) for event in events),
@@ -171,7 +179,9 @@ def _score_from(form: PlanHole) -> Score | None:
     raise InputError("some are null", where=", ".join(SCORE), accepted="all or none of them null")
 
 
-def _critical_from(values: list[float | None] | None) -> Array | None:
+def _critical_from(form: PlanHole) -> Array | None:
+    values = form.critical_rates_deg_per_mm
+    _agree("twist_spread_deg_per_mm", form.twist_spread_deg_per_mm, twist_spread(values))
     return None if values is None else rad_per_m(_measured(values))
 
 
@@ -183,7 +193,7 @@ def _measured(values: Any) -> Array:
 def _baseline_from(form: BaselineForm | None) -> Baseline | None:
     if form is None:
         return None
-    _agree(form.reversals == sum(form.reversals_per_joint), "baseline.reversals")
+    _agree("baseline.reversals", form.reversals, sum(form.reversals_per_joint))
     return Baseline(tuple(form.reversals_per_joint), float(rad(form.travel_deg)))
 
 

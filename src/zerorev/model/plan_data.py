@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from zerorev.model.plan import (
 )
 from zerorev.model.plan_schema import DepthFile, PlanFile
 
-__all__ = ["FORMS", "MOTION", "RPM", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head"]
+__all__ = ["FORMS", "MOTION", "RPM", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
 
 FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "deepest": DepthFile}
 """What file a plan becomes, by its strokes."""
@@ -104,8 +105,13 @@ def _critical_data(kappa: Array | None) -> dict[str, Any]:
         return {"critical_rates_deg_per_mm": None, "twist_spread_deg_per_mm": None}
     # of the digits that are written, so that a file that is read and written again stays the same
     written = plain(deg_per_mm(kappa))
-    spread = None if None in written else max(written) - min(written)
-    return {"critical_rates_deg_per_mm": written, "twist_spread_deg_per_mm": spread}
+    return {"critical_rates_deg_per_mm": written, "twist_spread_deg_per_mm": twist_spread(written)}
+
+
+def twist_spread(written: Sequence[float | None] | None) -> float | None:
+    """Greatest less least of the critical rates as a file has them; None where one is missing."""
+    known = [rate for rate in written or () if rate is not None]
+    return float(plain(max(known) - min(known))) if written is not None and len(known) == len(written) else None
 
 
 def _given_data(hole: Hole) -> dict[str, Any] | None:

@@ -141,7 +141,10 @@ class VerifiedForm(Form):
 
 
 class CertificateForm(Form):
-    """What is proven of the continuous motion; bounds are null where nothing is proven."""
+    """What is proven of the continuous motion; bounds are null where nothing is proven.
+
+    It is not recomputed by `zerorev check`, which leaves it out; with --certify it is proven again and replaced.
+    """
 
     verdict: Literal["certified", "refuted", "undecided"] = Field(
         description="certified (proven), refuted (proven to be wrong) or undecided"
@@ -213,11 +216,14 @@ class PlanHole(Form):
         description="a mapping of what was checked, and the outcome; or null: it was not"
     )
     certificate: CertificateForm | None = Field(
-        default=None, description="a mapping of what is proven of the continuous motion; or null: it was not asked for"
+        default=None,
+        description="what is proven of the continuous motion; not recomputed by zerorev check, which leaves it out, "
+        "but by check --certify; or null: it was not asked for",
     )
     certified_within: WithinForm | None = Field(
         default=None,
-        description="a mapping of mm and deg: certified for every part frame within; or null: not proven",
+        description="a mapping of mm and deg: certified for every part frame within; not recomputed by zerorev check, "
+        "which leaves it out, but by check --certify; or null: not proven",
     )
     criteria: CriteriaForm | None = Field(
         default=None, description="a mapping of what the criteria measure of the motion; or null: it was not measured"

@@ -1,0 +1,131 @@
+"""How `zerorev check` treats each field of a plan file: as an input, as a figure that it computes again, or not at all.
+
+A field that is added to the file has to be added here; a test walks the schema and finds those that are missing.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+__all__ = ["HEAD_FIELDS", "HOLE_FIELDS", "Field", "field_of"]
+
+How = Literal["input", "motion", "figure", "search", "finding", "check", "not recomputed"]
+
+
+class Field(NamedTuple):
+    """What is done with a field, and how near a number that is stated has to be to the one that is found.
+
+    Attributes:
+        how: `input`, what everything else is computed from; `motion`, followed and held by `verify.check`; `figure`,
+            computed by `verify.figures`; `search`, found by searching again; `finding`, what has to be said of the
+            answer; `check`, the outcome of the check itself; `not recomputed`, and the field's description says so.
+        relative: of the number.
+        absolute: in the unit of the file.
+        optional: whether null claims nothing, so that it is not held against what is found.
+        nil: in the unit of the file, on an arm of size 1: at this and below it a joint is at rest, and has no rate.
+    """
+
+    how: How
+    relative: float = 0.0
+    absolute: float = 0.0
+    optional: bool = False
+    nil: float = 0.0
+
+
+# the digits of a file, and of the two ways in which a figure is computed
+DIGITS = 1e-9
+# of the least rate: planning narrows a dip down until it falls by less than 1e-6 of the rate between samples
+DIP = 2e-6
+# [deg/mm] on an arm of size 1: a joint that is slower than half of this does not move (conventions: signature)
+AT_REST = 2e-9
+# of the deepest stroke: so much of it the search keeps back, and its steps end below it
+DEEPEST = 1e-5
+
+_ANGLE = Field("figure", DIGITS, 1e-8)  # [deg]
+_RATE = Field("figure", DIGITS, 1e-13)  # [deg/mm]
+_SLOWEST = _RATE._replace(relative=DIP, nil=AT_REST)
+_EXACT = Field("figure")
+
+HEAD_FIELDS: dict[str, Field] = {
+    "format": Field("input"),
+    "name": Field("input"),
+    "robot": Field("input"),
+    "tool": Field("input"),
+    "part_frame": Field("input"),
+    "settings": Field("input"),
+    "findings": Field("finding"),
+}
+"""By the path of a field in a file; an input and a finding stand for all below them."""
+
+HOLE_FIELDS: dict[str, Field] = {
+    "id": Field("input"),
+    "target_mm": Field("input"),
+    "direction": Field("input"),
+    "depth_mm": Field("input"),
+    "psi_zero": Field("input"),
+    "given": Field("input"),
+    "deepest_mm": Field("search", DEEPEST, 1e-9, optional=True),
+    "status": Field("search"),
+    "branch": Field("motion"),
+    "standoff_mm": Field("motion"),
+    "psi_deg": Field("motion"),
+    "joints_deg.start": Field("motion"),
+    "joints_deg.target": Field("motion"),
+    "joints_deg.end": Field("motion"),
+    "joints_deg.breakpoints": Field("motion"),
+    "reversals": _EXACT,
+    "reversals_per_joint": _EXACT,
+    "events": _EXACT,
+    "events.joint": _EXACT,
+    "events.leg": _EXACT,
+    "events.standoff_mm": Field("figure", DIGITS, 1e-8),
+    "travel_deg": _ANGLE,
+    "min_rate_deg_per_mm": _SLOWEST,
+    "mean_rate_deg_per_mm": _RATE,
+    "limit_distance_deg": _ANGLE,
+    "critical_rates_deg_per_mm": _RATE._replace(optional=True),
+    "twist_spread_deg_per_mm": _RATE._replace(optional=True),
+    "wrist_offset_mm": Field("figure", DIGITS, 1e-9),
+    "baseline": _EXACT,
+    "baseline.reversals": _EXACT,
+    "baseline.reversals_per_joint": _EXACT,
+    "baseline.travel_deg": _ANGLE,
+    "verified": Field("check", optional=True),
+    "verified.passed": Field("check"),
+    "verified.samples": Field("check"),
+    "verified.blend_samples": Field("check"),
+    "verified.reversals_per_joint": Field("check"),
+    "verified.max_position_error_mm": Field("check", absolute=1e-5),  # below what it allows they are but rounding
+    "verified.max_rotation_error_deg": Field("check", absolute=6e-7),
+    "verified.max_joint_step_deg": Field("check", 1e-6, 1e-9),
+    "verified.min_limit_distance_deg": Field("check", DIGITS, 1e-8),
+    "verified.failures": Field("check"),
+    "certificate": Field("not recomputed"),
+    "certified_within": Field("not recomputed"),
+    "criteria": Field("figure", optional=True),
+    "criteria.travel_deg": _ANGLE,
+    "criteria.margin_deg_per_mm": _SLOWEST,
+    "criteria.plunge_rotation_deg": _ANGLE,
+    "criteria.tool_speed_change_rpm": Field("figure", DIGITS, 1e-11),
+    "criteria.limit_distance": Field("figure", DIGITS, 1e-10),
+    "criteria.compliance_axial_um_per_n": Field("figure", DIGITS, 1e-12),
+    "criteria.compliance_lateral_um_per_n": Field("figure", DIGITS, 1e-12),
+    "criteria.manipulability": Field("figure", DIGITS, 1e-12),
+    "findings": Field("finding"),
+}
+"""Likewise of a hole, by the path within it; that of a depth file has its own below `plan`."""
+
+
+def field_of(path: str, fields: dict[str, Field]) -> Field | None:
+    """What is done with the field of a path such as `events[0].standoff_mm`; None where nobody has said.
+
+    Args:
+        path: with or without the places of entries in lists.
+        fields: of the head or of a hole.
+    """
+    names = [name.split("[")[0] for name in path.split(".")]
+    for end in range(len(names), 0, -1):
+        found = fields.get(".".join(names[:end]))
+        if found is not None:
+            return found if end == len(names) or found.how in ("input", "finding", "not recomputed") else None
+    return None
