@@ -273,7 +273,7 @@ class TestInterrupted:
 
 def begun(folder, workers):
     """A large job that is running and has finished three holes, and its part."""
-    (folder / "job.yaml").write_text(json.dumps(JOB | {"holes": [hole(n) for n in range(400)]}))
+    (folder / "job.yaml").write_text(json.dumps(JOB | {"proof_boxes": 0, "holes": [hole(n) for n in range(400)]}))
     command = [*CLI, "plan", "job.yaml", "-o", str(folder / "plan.json"), "--workers", str(workers)]
     running = subprocess.Popen(
         command, cwd=folder, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True

@@ -1,4 +1,4 @@
-"""Robotic drilling without joint reversals: robot, tool and holes in; the exact best motion, proven, out.
+"""Robotic drilling without joint reversals: robot, tool and holes in; the best motion and its proof out.
 
 The names below are the public ones. They are imported when first used, so that `import zerorev` is quick; the kernels
 behind `plan` are compiled on first use, which says so once, and cached.

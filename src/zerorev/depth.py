@@ -55,12 +55,14 @@ class Deepest:
         profile: two legs of that stroke, or None.
         branch: 0..7, or None.
         beyond_cap: of free legs, how deep straight ones go that twist more than `max_twist` [m]; 0 where no deeper.
+        at_most: no stroke of straight legs is as deep [m]; None: not proven.
     """
 
     depth: float
     profile: Profile | None = None
     branch: int | None = None
     beyond_cap: float = 0.0
+    at_most: float | None = None
 
     def resized(self, factor: float) -> Deepest:
         """The same at another size."""

@@ -18,11 +18,12 @@ from zerorev.depth import Deepest, deepened, deepest_stroke
 from zerorev.lead_in import find_lead_in
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan
+from zerorev.model.plan import HolePlan, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.resized import resized
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.search.bounds.proof import bound_depth, prove
 from zerorev.search.cut_short import cut_short, descended, legs_swapped
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
@@ -47,10 +48,12 @@ class Optimum:
     Attributes:
         motion: the best one at the hole's depth, or None where no branch can run any.
         deepest: the deepest stroke without a reversal.
+        optimality: how much better a motion could be, or None where that was not asked.
     """
 
     motion: Candidate | None
     deepest: Deepest
+    optimality: Optimality | None = None
 
 
 def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum:
@@ -64,7 +67,11 @@ def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum
     """
     pool = _Pool(robot, tool, hole, settings)
     best = pool.best()
-    return Optimum(pool.from_the_target(best), pool.as_drilled(pool.raised(best)))
+    pool.deepest = pool.bounded(pool.raised(best))
+    if best is not None and best.reversals and pool.deepest.depth >= pool.hole.depth:
+        best = pool.best()  # what the proof of the depth has found can be cut short
+    best, optimality = pool.proven(best)
+    return Optimum(pool.from_the_target(best), pool.as_drilled(pool.raised(best)), optimality)
 
 
 def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
@@ -85,10 +92,10 @@ def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings)
     """
     pool = _Pool(robot, tool, hole, settings)
     if pool.deepest.depth >= pool.hole.depth:
-        return pool.as_drilled(pool.deepest)
+        return pool.as_drilled(pool.bounded(pool.deepest))
     found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
     best = pool.order.best(one for one in found if one is not None and pool.allows(one))
-    return pool.as_drilled(pool.raised(best))
+    return pool.as_drilled(pool.bounded(pool.raised(best)))
 
 
 def alternatives(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> list[Candidate]:
@@ -232,6 +239,28 @@ class _Pool:
                 break
         return best
 
+    def proven(self, best: Candidate | None) -> tuple[Candidate | None, Optimality | None]:
+        """The best of straight legs, improved where a proof finds that possible, and what is proven of it."""
+        if self.settings.proof_boxes == 0 or self.settings.legs == "free":
+            return best, None
+        problem = Problem(self.robot, self.tool, self.hole, self.settings)
+        proof = prove(problem, best, self.settings.proof_boxes, self.allows)
+        return proof.best, proof.optimality
+
+    def bounded(self, deepest: Deepest) -> Deepest:
+        """The deepest stroke of straight legs with a bound on it; a deeper one where the proof finds it."""
+        boxes = self.settings.proof_boxes
+        if boxes == 0 or self.settings.legs == "free" or self.settings.keep_lead_in:
+            return deepest
+        problem = Problem(self.robot, self.tool, self.hole, self.settings)
+        while boxes > 0:
+            bound = bound_depth(problem, deepest.depth, boxes)
+            boxes -= bound.boxes
+            if bound.deeper is None:
+                return replace(deepest, at_most=bound.at_most)
+            deepest = deepened(self.robot, self.tool, self.hole, self.settings, bound.deeper)
+        return deepest
+
     def raised(self, best: Candidate | None) -> Deepest:
         """The deepest stroke, the best motion taken into account."""
         if best is None or best.reversals or best.depth <= self.deepest.depth:
@@ -255,9 +284,10 @@ class _Pool:
         """A stroke counted from the hole's own target."""
         depth = (found.depth + self.settings.corner) * self.size
         beyond = max(found.beyond_cap + self.settings.corner, 0.0) * self.size
+        at_most = None if found.at_most is None else max(found.at_most + self.settings.corner, 0.0) * self.size
         if found.profile is None or depth <= 0:
-            return Deepest(0.0, beyond_cap=beyond)
-        return replace(found, depth=depth, profile=self._up(found.profile), beyond_cap=beyond)
+            return Deepest(0.0, beyond_cap=beyond, at_most=at_most)
+        return replace(found, depth=depth, profile=self._up(found.profile), beyond_cap=beyond, at_most=at_most)
 
     def _up(self, profile: Profile) -> Profile:
         return Profile((profile.standoff + self.settings.corner) * self.size, profile.psi)

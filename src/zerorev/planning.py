@@ -15,7 +15,7 @@ from zerorev.kinematics import wrist_offset
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Baseline, Finding, HolePlan
+from zerorev.model.plan import Baseline, Finding, HolePlan, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
@@ -53,6 +53,8 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     if hole.profile is None:
         found = optimum(robot, tool, hole, settings)
         answer = _planned(robot, tool, hole, settings, found.motion)
+        if found.optimality is not None:
+            answer = _with_optimality(robot, settings, answer, found.motion, found.optimality)
         return _with_deepest(answer, settings, found.deepest)
     answer = _evaluated(robot, tool, hole, settings, hole.profile)
     return _with_deepest(answer, settings, deepest_as_drilled(robot, tool, hole, settings))
@@ -193,10 +195,34 @@ def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple
             f" the motion threshold of {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm"
         )
         if answer.status == "planned":
+            if answer.optimality is not None and answer.optimality.proven:
+                message += ", which no motion of straight legs with so few reversals keeps (proven)"
             message += "; no motion with so few reversals was found that keeps more"
         found.append(Finding("warning", "threshold", message, hole.id))
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
+
+
+def _with_optimality(
+    robot: Robot, settings: Settings, answer: HolePlan, best: Candidate | None, optimality: Optimality
+) -> HolePlan:
+    """The answer with what is proven of it, and with findings that say what of them is proven.
+
+    Of a motion that took the place of the best, which did not pass the check, only the bounds are known.
+    """
+    if (None if best is None else best.score) is not answer.score:
+        return replace(answer, optimality=replace(optimality, travel_at_least=None, gap=None, proven=False))
+    proven = replace(answer, optimality=optimality)
+    if answer.motion is None:
+        findings = [
+            replace(finding, message=f"{finding.message} (proven for straight legs)")
+            if optimality.proven and finding.kind in ("limit", "unreachable")
+            else finding
+            for finding in answer.findings
+        ]
+        return replace(proven, findings=tuple(findings))
+    before, after = (motion_findings(robot, settings, each) for each in (answer, proven))
+    return replace(proven, findings=(*after, *(each for each in answer.findings if each not in before)))
 
 
 def _with_deepest(answer: HolePlan, settings: Settings, deepest: Deepest) -> HolePlan:
@@ -211,7 +237,7 @@ def _with_deepest(answer: HolePlan, settings: Settings, deepest: Deepest) -> Hol
             f" {deepest.beyond_cap * 1e3:.3f} mm without a reversal, free legs within it {deepest.depth * 1e3:.3f} mm"
         )
         found.append(Finding("info", "deepest", message, hole))
-    return replace(answer, deepest=deepest.depth, findings=tuple(found))
+    return replace(answer, deepest=deepest.depth, deepest_at_most=deepest.at_most, findings=tuple(found))
 
 
 def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:

@@ -127,7 +127,7 @@ class _Depth:
 
     def __call__(self, asked: tuple[int, Hole]) -> float:
         robot, hole = asked
-        return deepest_as_drilled(*self.robots[robot][:2], hole, self.robots[robot][2]).depth
+        return deepest_as_drilled(*self.robots[robot][:2], hole, self.robots[robot][2].without_proof).depth
 
 
 def _check_same(jobs: Sequence[Job]) -> None:

@@ -133,7 +133,7 @@ def offset_curve(
         if progress:
             progress(done, deepest.size)
         moved = with_offset(robot, tool, float(e[i]), float(a[j]))
-        deepest[i, j, k] = deepest_as_drilled(robot, moved, holes[k], settings).depth
+        deepest[i, j, k] = deepest_as_drilled(robot, moved, holes[k], settings.without_proof).depth
     if progress:
         progress(deepest.size, deepest.size)
     return OffsetCurve(e, a, deepest, np.array([hole.depth for hole in holes]))

@@ -17,6 +17,7 @@ def plan(
     *,
     output: Output = None,
     figures: Path | None = None,
+    proof_boxes: int | None = None,
     workers: int | None = None,
     json: bool = False,
 ) -> int:
@@ -29,6 +30,7 @@ def plan(
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
+        proof_boxes: How many boxes of legs each hole's proof may examine, instead of the job's; 0: no proof.
         workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
         json: Print the plan as JSON on standard output, and nothing else there.
     """
@@ -39,7 +41,7 @@ def plan(
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
-    wanted = read_job(job)
+    wanted = read_job(job, options={} if proof_boxes is None else {"proof_boxes": proof_boxes})
 
     from zerorev.run import run
 
@@ -56,6 +58,7 @@ def depth(
     psi_bound_deg: float | None = None,
     min_rate_deg_per_mm: float | None = None,
     max_twist_deg_per_mm: float | None = None,
+    proof_boxes: int | None = None,
     workers: int | None = None,
     json: bool = False,
 ) -> int:
@@ -71,6 +74,7 @@ def depth(
         psi_bound_deg: Spins stay within +- this, instead of the job's bound.
         min_rate_deg_per_mm: Every joint moves so much at every point, instead of the job's motion threshold.
         max_twist_deg_per_mm: Greatest twist rate of free legs, instead of the job's.
+        proof_boxes: How many boxes of legs the proof of each depth may examine, instead of the job's; 0: no proof.
         workers: Processes to run it on; by default all cores where the job is large. The answer is the same.
         json: Print what the file holds as JSON on standard output, and nothing else there.
     """
@@ -82,6 +86,7 @@ def depth(
         "psi_bound_deg": psi_bound_deg,
         "min_rate_deg_per_mm": min_rate_deg_per_mm,
         "max_twist_deg_per_mm": max_twist_deg_per_mm,
+        "proof_boxes": proof_boxes,
     }
     given = {key: value for key, value in options.items() if value is not None}
     wanted = read_job(job, depth_needed=False, options=given)

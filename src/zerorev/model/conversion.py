@@ -116,6 +116,7 @@ def settings_from(form: SettingsForm) -> Settings:
         feed_plunge=float(m(form.feed_mm_s.plunge)),
         feed_retract=float(m(form.feed_mm_s.retract)),
         spindle_rpm=form.spindle_rpm,
+        proof_boxes=Settings.proof_boxes if form.proof_boxes is None else form.proof_boxes,
     )
 
 
@@ -146,6 +147,7 @@ def settings_data(settings: Settings) -> dict[str, Any]:
         "keep_lead_in": settings.keep_lead_in,
         "feed_mm_s": {"plunge": mm(settings.feed_plunge), "retract": mm(settings.feed_retract)},
         "spindle_rpm": settings.spindle_rpm,
+        "proof_boxes": settings.proof_boxes,
     }
     return dict(plain(data))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -53,6 +53,7 @@ class Settings:
         feed_plunge: feed of the plunge [m/s].
         feed_retract: feed of the retract [m/s].
         spindle_rpm: speed of the spindle [rev/min], or None where the program need not know it.
+        proof_boxes: how many boxes of legs a proof of the optimum, or of the deepest stroke, may examine; 0: no proof.
     """
 
     min_rate: float = float(np.deg2rad(10.0))
@@ -73,6 +74,7 @@ class Settings:
     feed_plunge: float = 5e-3
     feed_retract: float = 20e-3
     spindle_rpm: float | None = None
+    proof_boxes: int = 100_000
 
     def __post_init__(self) -> None:
         """Check ranges."""
@@ -84,6 +86,7 @@ class Settings:
             _check(self.psi_bound > 0, "psi_bound", "above 0, or none for a periodic spin")
         if self.blend_shortfall is not None:
             _check(0 <= self.blend_shortfall <= self.blend, "blend_shortfall", "0 to the blend radius")
+        _check(self.proof_boxes >= 0, "proof_boxes", "0 or more")
         if self.spindle_rpm is not None:
             _check(self.spindle_rpm > 0, "spindle_rpm", "above 0, or none")
         _check(
@@ -110,6 +113,11 @@ class Settings:
                 where="objective",
                 accepted="joint_stiffness_nm_per_rad beside it, six numbers above 0 [N m/rad]",
             )
+
+    @property
+    def without_proof(self) -> Settings:
+        """The same without the proof of the optimum, for those who ask of very many places."""
+        return replace(self, proof_boxes=0)
 
     @property
     def passing_blend(self) -> float:

@@ -23,6 +23,7 @@ __all__ = [
     "Level",
     "Measures",
     "Motion",
+    "Optimality",
     "Plan",
     "Score",
     "Strokes",
@@ -219,6 +220,25 @@ class Within:
 
 
 @dataclass(frozen=True)
+class Optimality:
+    """How much better a motion of straight legs could be, by a global search that bounds (theory §3).
+
+    Attributes:
+        reversals_at_least: weighted count; no motion has fewer.
+        travel_at_least: no motion that keeps the motion threshold with the planned reversals travels less [rad]; None
+            where the planned one does not keep it, or where another criterion decides.
+        gap: what the planned motion travels above that, as a share of its own travel; None likewise.
+        proven: whether nothing was left undecided: without a motion, that there is none; of a motion below the motion
+            threshold, that no motion with so few reversals keeps it; otherwise that the gap is at most 0.1 %.
+    """
+
+    reversals_at_least: float
+    travel_at_least: float | None
+    gap: float | None
+    proven: bool
+
+
+@dataclass(frozen=True)
 class HolePlan:
     """One hole's answer.
 
@@ -235,6 +255,8 @@ class HolePlan:
         measures: what the criteria measure of the motion, or None.
         deepest: the deepest stroke without a reversal [m], on the hole's own branch if it names one; 0 where there is
             none, None where it was not looked for.
+        deepest_at_most: no stroke of straight legs without a reversal is as deep [m]; None: not proven.
+        optimality: how much better a motion could be, or None where that was not asked.
         critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
             finite where a joint has none; None without a motion.
         certified_within: every placement error of the part within these bounds is certified, too; None until proven.
@@ -251,6 +273,8 @@ class HolePlan:
     certificate: Certificate | None = None
     measures: Measures[float] | None = None
     deepest: float | None = None
+    deepest_at_most: float | None = None
+    optimality: Optimality | None = None
     critical_rates: Array | None = None
     certified_within: Within | None = None
 

@@ -29,6 +29,7 @@ from zerorev.model.plan import (
     HolePlan,
     Measures,
     Motion,
+    Optimality,
     Plan,
     Score,
     Verification,
@@ -44,6 +45,7 @@ from zerorev.model.plan_schema import (
     FindingForm,
     GivenForm,
     JointsDegForm,
+    OptimalityForm,
     PlanFile,
     PlanHole,
     VerifiedForm,
@@ -69,6 +71,8 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
         _same_numbers(form.tool.sha256, tool_data(tool)["sha256"])
     with inside("settings"):
         settings = settings_from(form.settings)
+        if form.settings.proof_boxes is None:
+            settings = settings.without_proof
     holes: Sequence[PlanHole | DepthHole] = form.holes
     ids = [hole.id for hole in holes]
     if len(set(ids)) < len(ids):
@@ -136,8 +140,20 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             certified_within=_within_from(form.certified_within) if form.certified_within else None,
             measures=_measures_from(form.criteria) if form.criteria else None,
             deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
+            deepest_at_most=None if form.deepest_at_most_mm is None else float(m(form.deepest_at_most_mm)),
+            optimality=_optimality_from(form.optimality) if form.optimality else None,
             critical_rates=_critical_from(form),
         )
+
+
+def _optimality_from(form: OptimalityForm) -> Optimality:
+    travel, gap = form.travel_at_least_deg, form.gap_percent
+    return Optimality(
+        form.reversals_at_least,
+        None if travel is None else float(rad(travel)),
+        None if gap is None else gap / 100,
+        form.proven,
+    )
 
 
 def _agree(name: str, stated: Any, found: Any, tolerance: float = 0.0) -> None:

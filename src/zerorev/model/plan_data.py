@@ -17,6 +17,7 @@ from zerorev.model.plan import (
     HolePlan,
     Measures,
     Motion,
+    Optimality,
     Plan,
     Score,
     Strokes,
@@ -86,11 +87,13 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
     return {
         **asked_data(answer.hole),
         "deepest_mm": None if answer.deepest is None else mm(answer.deepest),
+        "deepest_at_most_mm": None if answer.deepest_at_most is None else mm(answer.deepest_at_most),
         "status": answer.status,
         **_motion_data(answer.motion),
         **_score_data(answer.score),
         **_critical_data(answer.critical_rates),
         "wrist_offset_mm": mm(answer.wrist_offset),
+        "optimality": _optimality_data(answer.optimality),
         "baseline": _baseline_data(answer.baseline),
         "verified": _verified_data(answer.verified),
         "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
@@ -155,6 +158,18 @@ def _baseline_data(baseline: Baseline | None) -> dict[str, Any] | None:
         "reversals": baseline.reversals,
         "reversals_per_joint": baseline.reversals_per_joint,
         "travel_deg": deg(baseline.travel),
+    }
+
+
+def _optimality_data(optimality: Optimality | None) -> dict[str, Any] | None:
+    if optimality is None:
+        return None
+    travel, gap = optimality.travel_at_least, optimality.gap
+    return {
+        "reversals_at_least": optimality.reversals_at_least,
+        "travel_at_least_deg": None if travel is None else deg(travel),
+        "gap_percent": None if gap is None else 100 * gap,
+        "proven": optimality.proven,
     }
 
 

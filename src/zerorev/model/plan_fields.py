@@ -41,6 +41,9 @@ AT_REST = 2e-9
 # of the deepest stroke: so much of it the search keeps back, and its steps end below it
 DEEPEST = 1e-5
 
+# of a bound on the travel: where a search stops depends a little on the last digits of what it starts from
+BOUND = 1e-4
+
 _ANGLE = Field("figure", DIGITS, 1e-8)  # [deg]
 _RATE = Field("figure", DIGITS, 1e-13)  # [deg/mm]
 _SLOWEST = _RATE._replace(relative=DIP, nil=AT_REST)
@@ -65,6 +68,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "psi_zero": Field("input"),
     "given": Field("input"),
     "deepest_mm": Field("search", DEEPEST, 1e-9, optional=True),
+    "deepest_at_most_mm": Field("search", BOUND, 1e-9, optional=True),
     "status": Field("search"),
     "branch": Field("motion"),
     "standoff_mm": Field("motion"),
@@ -86,6 +90,11 @@ HOLE_FIELDS: dict[str, Field] = {
     "critical_rates_deg_per_mm": _RATE._replace(optional=True),
     "twist_spread_deg_per_mm": _RATE._replace(optional=True),
     "wrist_offset_mm": Field("figure", DIGITS, 1e-9),
+    "optimality": Field("search", optional=True),
+    "optimality.reversals_at_least": Field("search", DIGITS),
+    "optimality.travel_at_least_deg": Field("search", BOUND, 1e-8),
+    "optimality.gap_percent": Field("search", absolute=100 * BOUND),
+    "optimality.proven": Field("search"),
     "baseline": _EXACT,
     "baseline.reversals": _EXACT,
     "baseline.reversals_per_joint": _EXACT,

@@ -114,6 +114,22 @@ class JointsDegForm(Form):
     )
 
 
+class OptimalityForm(Form):
+    """How much better a motion of straight legs could be, by a global search that bounds."""
+
+    reversals_at_least: NotNegative = Field(description="a number: no motion has fewer reversals (weighted)")
+    travel_at_least_deg: NotNegative | None = Field(
+        description="a number [deg]: none with so few reversals that keeps the threshold travels less; null: no bound"
+    )
+    gap_percent: NotNegative | None = Field(
+        description="a number [%]: what the planned motion travels above that, of its own travel; null: no bound"
+    )
+    proven: bool = Field(
+        description="true or false: whether nothing was left undecided (without a motion: that there is none; below"
+        " the motion threshold: that no motion with so few reversals keeps it; else: a gap of at most 0.1 %)"
+    )
+
+
 class BaselineForm(Form):
     """The same hole drilled with constant spin, psi = psi_start, on the plan's branch."""
 
@@ -176,6 +192,10 @@ class PlanHole(Form):
         default=None,
         description="a number [mm]: the deepest stroke without a reversal, 0: none; or null: not looked for",
     )
+    deepest_at_most_mm: NotNegative | None = Field(
+        default=None,
+        description="a number [mm]: no stroke of straight legs without a reversal is as deep; or null: not proven",
+    )
     psi_zero: Three = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
     given: GivenForm | None = Field(
         default=None,
@@ -209,6 +229,10 @@ class PlanHole(Form):
         default=None, description="a number [deg/mm]: greatest less least critical rate; or null: a joint has none"
     )
     wrist_offset_mm: NotNegative = Field(description="a number [mm]: distance of the wrist centre from the drill axis")
+    optimality: OptimalityForm | None = Field(
+        default=None,
+        description="a mapping of what no motion of straight legs can beat; or null: no proof was asked for",
+    )
     baseline: BaselineForm | None = Field(
         description="a mapping of reversals, reversals_per_joint and travel_deg; or null: it cannot be run"
     )

@@ -221,6 +221,11 @@ class SettingsForm(Form):
         default=None,
         description="a number above 0 [rev/min]: speed of the spindle; or null: the program need not know it",
     )
+    proof_boxes: Annotated[int, Field(ge=0, le=100_000_000)] | None = Field(
+        default=None,
+        description="a whole number, 0 or more: how many boxes of legs each hole's proof may examine; 0: no proof;"
+        " or null: 100000 in a job, and 0 in a file of answers, which is then of a time without proofs",
+    )
 
 
 class HoleForm(Form):

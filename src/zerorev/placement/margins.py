@@ -81,7 +81,7 @@ class Asked:
         except InputError:  # the reference of the spin has no meaning there, so no job could stand there
             return np.array([-hole.depth for hole in self.job.holes])
         for k in look.order:
-            deepest = deepest_as_drilled(moved.robot, moved.tool, moved.holes[k], moved.settings)
+            deepest = deepest_as_drilled(moved.robot, moved.tool, moved.holes[k], moved.settings.without_proof)
             margins[k] = deepest.depth - moved.holes[k].depth
             if margins[k] <= look.enough:
                 break

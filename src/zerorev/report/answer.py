@@ -38,6 +38,7 @@ class Shown:
         self._plan, self._rows = plan, list[HolePlan]()
         self._findings: list[Finding] = list(plan.findings)
         self._status, self._reversals = Counter[str](), Counter[int]()
+        self._proven, self._bounded = 0, 0
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
                                                       "deepest beyond depth [mm]",
                                                       "certified within [mm]")}  # fmt: skip
@@ -53,6 +54,8 @@ class Shown:
         self.sound &= not any(finding.level == "error" for finding in answer.findings)
         self.certified &= answer.certificate is not None and answer.certificate.verdict == "certified"
         self._status[answer.status] += 1
+        self._bounded += answer.optimality is not None
+        self._proven += answer.optimality is not None and answer.optimality.proven
         if len(self._rows) <= ROWS:
             self._rows.append(answer)
         for name, value in self._values(answer):
@@ -97,6 +100,8 @@ class Shown:
             kinds = ", ".join(f"{count} {status}" for status, count in sorted(self._status.items()))
             counts = ", ".join(f"{count} with {n} reversals" for n, count in sorted(self._reversals.items()))
             lines = [Text(f"{sum(self._status.values())} holes: {kinds}; {counts or 'no motion'}")]
+        if self._bounded:
+            lines.append(Text(f"optimum of straight legs: proven for {self._proven} of {self._bounded} holes"))
         if self._figures["deepest [mm]"].count:
             lines.append(Text(f"deepest without a reversal: {how_deep(self._plan.settings)}"))
         return lines + tables.finding_lines(self._findings)

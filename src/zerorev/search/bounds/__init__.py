@@ -1,0 +1,1 @@
+"""How much better a motion could be at all: a global search that bounds (theory §3)."""

@@ -1,0 +1,199 @@
+"""The state of a branch and bound, and the rules that it keeps (theory §3)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from zerorev.kernels import bound_legs, bound_tree, intervals
+from zerorev.kinematics import TwistPlane
+from zerorev.model._arrays import Array
+from zerorev.model.robot import ArmGeometry, Robot
+from zerorev.search.bounds.rates import Formulas, formulas
+
+__all__ = ["Rules", "Search", "model_limits"]
+
+SPINS, SLOPES = 32, 8  # intervals to begin with, of spins and of slopes within a turn either way
+FAR = 1.4 * np.pi  # [rad] of twist, of intervals beyond a turn: with the spins of a node less than a turn in all
+FIRST_ROOM = 4096
+
+
+class Rules(NamedTuple):
+    """What legs are held to; a NamedTuple, so that kernels take it whole. SI units, model angles.
+
+    Attributes:
+        depth: of the legs [m].
+        min_rate: of a joint that does not reverse [rad/m]; 0: none.
+        psi_bound: spins within +- this [rad]; 0: periodic.
+        lower: limits of the joints, shape (6,).
+        upper: likewise.
+        flips: which wrist flips count, shape (2,).
+        weights: what a reversal of each joint costs, shape (6,).
+        most_cost: what a motion may cost at the most.
+        least_weight: of any joint.
+    """
+
+    depth: float
+    min_rate: float
+    psi_bound: float
+    lower: Array
+    upper: Array
+    flips: npt.NDArray[np.bool_]
+    weights: Array
+    most_cost: float
+    least_weight: float
+
+
+class Tree(NamedTuple):
+    """Nodes and the heap of those to be examined; a NamedTuple, so that kernels take it whole.
+
+    Attributes:
+        heap: numbers of nodes, shape (N,).
+        nodes: interval of spins and value, shape (N, 3).
+        lists: posture, where its slopes start and how many they are, how many cuts, shape (N, 4).
+        cuts: more stand-offs to be looked at, as shares of the depth, shape (N, MOST_CUTS).
+        slopes: intervals, shape (S, 2).
+        counts: see `kernels.bound_tree`, shape (8,).
+        values: likewise, shape (4,).
+        candidate: spin at the target, two slopes, posture, shape (4,).
+    """
+
+    heap: npt.NDArray[np.int64]
+    nodes: Array
+    lists: npt.NDArray[np.int64]
+    cuts: Array
+    slopes: Array
+    counts: npt.NDArray[np.int64]
+    values: Array
+    candidate: Array
+
+
+def model_limits(robot: Robot) -> tuple[Array, Array]:
+    """Limits of the model angles [rad], each of shape (6,)."""
+    sign, offset = np.array(robot.arm.sign), np.array(robot.arm.offset)
+    ends = np.stack([robot.limits.lower, robot.limits.upper]) * sign - offset
+    return ends.min(axis=0), ends.max(axis=0)
+
+
+class Search:
+    """One branch and bound; `advance` goes on with it.
+
+    Args:
+        arm: of the robot.
+        plane: of the hole.
+        rules: what legs are held to.
+        postures: which of the four count.
+        twist: greatest twist of a leg [rad].
+        gap: what a motion may travel more than the least, relative, and still be proven.
+    """
+
+    def __init__(
+        self, arm: ArmGeometry, plane: TwistPlane, rules: Rules, postures: list[int], twist: float, gap: float
+    ) -> None:
+        self.rules = rules
+        self.models: tuple[Formulas, ...] = tuple(
+            formulas(arm, plane, posture, threshold=rules.min_rate > 0) for posture in range(4)
+        )
+        self.tree = _planted(rules, postures, twist)
+        self.tree.values[bound_tree.GAP] = gap
+        self._work = _room()
+
+    @property
+    def looks(self) -> int:
+        """Looks so far, each at 8 stand-offs of one box."""
+        return int(self.tree.counts[bound_tree.LOOKS_DONE])
+
+    @property
+    def bound(self) -> float:
+        """What no motion is better than: reversals x BIG + travel."""
+        tree = self.tree
+        top = tree.nodes[tree.heap[0], bound_tree.NODE_VALUE] if tree.counts[bound_tree.HEAP] else bound_tree.NOTHING
+        return float(min(top, tree.values[bound_tree.LEFT], bound_tree.threshold(self.rules, tree)))
+
+    def improve(self, cost: float, travel: float) -> None:
+        """Take note of a motion that is better than the best so far."""
+        self.rules = self.rules._replace(most_cost=min(cost, self.rules.most_cost))
+        self.tree.values[bound_tree.BEST] = bound_tree.BIG * cost + travel
+
+    def cut(self, shares: Array) -> None:
+        """Have more stand-offs looked at in the two nodes that the last candidate came from."""
+        tree = self.tree
+        for node in tree.counts[bound_tree.LAST_LEFT : bound_tree.LAST_RIGHT + 1]:
+            count = int(tree.lists[node, bound_tree.CUTS])
+            fresh = shares[: bound_tree.MOST_CUTS - count]
+            tree.cuts[node, count : count + fresh.size] = fresh
+            tree.lists[node, bound_tree.CUTS] = count + fresh.size
+
+    def advance(self, most_looks: int) -> int:
+        """Go on until there is something to say: see `kernels.bound_tree.advance`."""
+        while True:
+            reason = int(bound_tree.advance(self.models, self.rules, self.tree, most_looks, self._work))
+            if reason != bound_tree.FULL:
+                return reason
+            self.tree = _grown(self.tree)
+
+
+def _planted(rules: Rules, postures: list[int], twist: float) -> Tree:
+    """All spins and slopes, in a few coarse nodes."""
+    bound = rules.psi_bound or np.pi
+    spins = np.linspace(-bound, bound, max(2, int(np.ceil(SPINS * bound / np.pi))) + 1)
+    slopes = _slopes(twist) / rules.depth
+    count = slopes.size - 1
+    first = len(postures) * (spins.size - 1)
+    room = max(FIRST_ROOM, 2 * first)
+    tree = Tree(
+        heap=np.zeros(room, dtype=np.int64),
+        nodes=np.zeros((room, 3)),
+        lists=np.zeros((room, 4), dtype=np.int64),
+        cuts=np.zeros((room, bound_tree.MOST_CUTS)),
+        slopes=np.zeros((max(4 * FIRST_ROOM, 2 * count), 2)),
+        counts=np.zeros(8, dtype=np.int64),
+        values=np.array([bound_tree.NOTHING, bound_tree.NOTHING, bound_tree.NOTHING, 0.0]),
+        candidate=np.zeros(4),
+    )
+    tree.slopes[:count, 0], tree.slopes[:count, 1] = slopes[:-1], slopes[1:]
+    tree.counts[bound_tree.SLOPES] = count
+    numbers = np.arange(first)
+    tree.heap[:first] = numbers
+    tree.nodes[:first, :2] = np.tile(np.stack([spins[:-1], spins[1:]], axis=1), (len(postures), 1))
+    tree.lists[:first, bound_tree.POSTURE] = np.repeat(postures, spins.size - 1)
+    tree.lists[:first, bound_tree.COUNT] = count
+    tree.counts[bound_tree.HEAP] = tree.counts[bound_tree.NODES] = first
+    return tree
+
+
+def _slopes(twist: float) -> Array:
+    """Ends of the first intervals of twist [rad]: finer within a turn, where nearly all legs of interest lie."""
+    within = min(twist, 2 * np.pi)
+    inner = np.linspace(0, within, SLOPES // 2 + 1)
+    outer = np.linspace(within, twist, int(np.ceil((twist - within) / FAR)) + 1)[1:]
+    half = np.append(inner, outer)
+    return np.concatenate([-half[:0:-1], half])
+
+
+def _grown(tree: Tree) -> Tree:
+    """The same with twice the room."""
+
+    def doubled(array: Any) -> Any:
+        return np.concatenate([array, np.zeros_like(array)])
+
+    return tree._replace(
+        heap=doubled(tree.heap), nodes=doubled(tree.nodes), lists=doubled(tree.lists), cuts=doubled(tree.cuts),
+        slopes=doubled(tree.slopes),
+    )  # fmt: skip
+
+
+def _room() -> tuple[Any, ...]:
+    """What the loop works in."""
+    most = bound_tree.MOST_LEGS
+    return (
+        np.zeros((most, bound_legs.COLUMNS)),
+        np.zeros((most, bound_legs.KNOWN, 6), dtype=np.int64),
+        np.zeros((most, bound_legs.COLUMNS)),
+        np.zeros((most, bound_legs.KNOWN, 6), dtype=np.int64),
+        np.zeros(most, dtype=np.bool_),
+        (np.zeros(intervals.LANES), np.zeros(intervals.LANES)),
+        (np.zeros(most, dtype=np.int64), np.zeros(most, dtype=np.int64), np.zeros((most, most))),
+    )
