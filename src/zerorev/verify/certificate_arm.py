@@ -104,15 +104,20 @@ def body_at(setting: Setting, pose: Pose[Ball]) -> Body[Ball]:
     """A pose solved in the setting's posture."""
     arm, posture = setting
     x, y, z = pose.wrist
-    b, squared = arb(arm.b), x * x + y * y
-    ahead_2 = squared - b * b
+    b = arb(arm.b)
+    ahead_2 = x * x + y * y - b * b
     ahead = ahead_2.sqrt() * posture.reach
-    share = 1 / squared
-    c1, s1 = (x * ahead + y * b) * share, (y * ahead - x * b) * share
+    # quotients of lengths are taken before products: what is linear cancels early, and models stay narrow
+    share = 1 / ahead
+    c1, s1 = x * share, y * share
+    if setting.arm.b:
+        aside = b * share
+        share = 1 / (1 + aside * aside)
+        c1, s1 = (c1 + s1 * aside) * share, (s1 - c1 * aside) * share
 
     up, out, c2 = z - arb(arm.c1), ahead - arb(arm.a1), arb(arm.c2)
     fore_2 = arb(arm.a2) ** 2 + arb(arm.c3) ** 2
-    line_2 = up * up + out * out
+    line_2 = up * up + ahead_2 - (ahead * 2 - arb(arm.a1)) * arb(arm.a1)
     along = (line_2 + (c2 * c2 - fore_2)) / 2
     height_2 = line_2 * (c2 * c2) - along * along
     height = height_2.sqrt() * posture.elbow
@@ -144,10 +149,11 @@ def rates(setting: Setting, body: Body[Ball], twist: Twist[Ball]) -> list[Ball]:
     turn_x, turn_y, turn_z = c1 * wx + s1 * wy, c1 * wy - s1 * wx - q23, wz - q1
     left_x, left_z = c23 * turn_x - s23 * turn_z, s23 * turn_x + c23 * turn_z
     hx, hy, c5 = body.axis_6
-    sine_2 = body.squares[2]
-    q6 = (left_x * hx + turn_y * hy) / sine_2
+    share = 1 / body.squares[2].sqrt()
+    c4, s4 = hx * share, hy * share
+    q6 = (left_x * c4 + turn_y * s4) * share
     q4 = left_z - c5 * q6
-    q5 = (turn_y * hx - left_x * hy) / sine_2.sqrt() * setting.posture.flip
+    q5 = (turn_y * c4 - left_x * s4) * setting.posture.flip
     return [rate * int(sign) for rate, sign in zip((q1, q2, q23 - q2, q4, q5, q6), setting.arm.sign, strict=True)]
 
 

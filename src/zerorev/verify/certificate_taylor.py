@@ -137,10 +137,14 @@ class Taylor:
 
     def sqrt(self) -> Taylor:
         """Square root; where a model may be 0 or less, its rest is NaN."""
-        root, least = np.sqrt(self.c), self.c - self._off
-        # the third derivative is greatest where the argument is least
-        third = 1 / (16 * np.sqrt(np.where(least > 0, least, np.nan)) ** 5)
-        return self._function(root, 0.5 / root, -0.125 / (self.c * root), third)
+        root, off = np.sqrt(self.c), self._off
+        least = np.where(off < self.c, self.c - off, np.nan)
+        # the third derivative is greatest where the argument is least; closer, but for rounding, is the rest of the
+        # binomial series there, where all its terms but the first have one sign
+        derivative = 1 / (16 * least**2 * np.sqrt(least))
+        share = off / self.c
+        series = root * (1 - share / 2 - share**2 / 8 - np.sqrt(least / self.c) + 2 * ROUNDING) / off**3
+        return self._function(root, 0.5 / root, -0.125 / (self.c * root), np.fmin(derivative, series))
 
     def sin_cos(self) -> tuple[Taylor, Taylor]:
         """Sine and cosine of an angle [rad]."""
