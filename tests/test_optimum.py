@@ -78,7 +78,11 @@ class TestCases:
         answer = plan(robot, tool, hole, settings)
         assert answer.score.reversals == 0
         assert answer.deepest >= hole.depth
-        assert plan_deepest(robot, tool, hole, settings).deepest == answer.deepest
+        deepest = plan_deepest(robot, tool, hole, settings)
+        assert deepest.deepest == answer.deepest
+        # as the check of a depth file searches again
+        again = replace(hole, depth=deepest.deepest, profile=deepest.motion.profile)
+        assert deepest_as_drilled(robot, tool, again, settings).depth == deepest.deepest
         assert deepest_as_drilled(robot, tool, hole, settings).depth == answer.deepest
 
 

@@ -30,13 +30,14 @@ from zerorev.search.rank import Candidate
 from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, target_spins
 
-__all__ = ["Deepest", "deepened", "deepest_stroke"]
+__all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_stroke"]
 
 FIRST_LOOK = 0.06  # of the stretched arm's length: about what a middling hole allows
 STEP = 1.5  # from one depth of the coarse look to the next
 MOST_LOOKS = 16
 SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
 LOOKS = 9  # points of a leg
+WORTH_RAISING = 1e-4  # relative
 ROUGH, ENOUGH = 1e-6, 1e-7  # relative: less is no gain
 ENOUGH_LACK = 1e-6  # [rad/m]
 SHORTER = 0.4  # of the legs of a start
@@ -112,7 +113,8 @@ def deepened(robot: Robot, tool: Tool, hole: Hole, settings: Settings, motion: C
         return own
     steepest = settings.max_twist if settings.legs == "free" else np.inf
     deeper = _Search(robot, tool, hole, settings, steepest=steepest).run_from(motion)
-    return deeper if deeper.depth > own.depth else own
+    # less is no gain, so that from the end of a valley nothing goes on
+    return deeper if deeper.depth > own.depth * (1 + WORTH_RAISING) else own
 
 
 @dataclass(frozen=True)

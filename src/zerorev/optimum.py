@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from zerorev.depth import Deepest, deepened, deepest_stroke
+from zerorev.depth import WORTH_RAISING, Deepest, deepened, deepest_stroke
 from zerorev.lead_in import find_lead_in
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -37,6 +37,7 @@ __all__ = ["LEAST_STROKE", "Optimum", "alternatives", "best_motion", "deepest_as
 MORE_MARGIN = ((1.0, 10.0), (1.05, 1e3), (1.5, 1e4), (3.0, 1e5))  # of the threshold, and of the least rate besides
 LEAST_STROKE = 1e-7  # of the reach: in a shorter one the joints move by little more than the rounding of an angle
 LEAD_IN_STEPS = 14  # halvings of a lead-in, to 1 um of 10 mm
+MOST_RAISES = 8
 SAME_PLACE = 1e-9  # [m]
 SAME_RATE = 1e-6  # relative: by so much the slowest joint may be below the motion threshold and still keep it
 
@@ -263,14 +264,27 @@ class _Pool:
 
     def raised(self, best: Candidate | None) -> Deepest:
         """The deepest stroke, the best motion taken into account."""
-        if best is None or best.reversals or best.depth <= self.deepest.depth:
-            return self.deepest
-        if best.score.min_rate.min() < max(self.settings.min_rate, LEAST_RATE / 2) * (1 - SAME_RATE):
+        if best is None or best.depth <= self.deepest.depth or not self.keeps(best):
             return self.deepest
         if self.settings.keep_lead_in:
             return replace(self.deepest, depth=best.depth, profile=best.profile, branch=best.branch)
         deeper = deepened(self.robot, self.tool, self.hole, self.settings, best)
+        for _ in range(MOST_RAISES):
+            # another valley may go on where this one ends
+            hole = replace(self.hole, depth=deeper.depth)
+            beyond = without_reversal(Problem(self.robot, self.tool, hole, self.settings))
+            if beyond is None or not self.keeps(beyond):
+                break
+            found = deepened(self.robot, self.tool, hole, self.settings, beyond)
+            if found.depth <= deeper.depth * (1 + WORTH_RAISING):
+                break
+            deeper = found
         return replace(deeper, beyond_cap=self.deepest.beyond_cap)
+
+    def keeps(self, motion: Candidate) -> bool:
+        """Whether a motion has no reversal and keeps the motion threshold at every point."""
+        least = max(self.settings.min_rate, LEAST_RATE / 2) * (1 - SAME_RATE)
+        return motion.reversals == 0 and bool(motion.score.min_rate.min() >= least)
 
     def from_the_target(self, found: Candidate | None) -> Candidate | None:
         """A motion with its stand-off counted from the hole's own target."""

@@ -66,7 +66,8 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     Args:
         robot: the arm.
         tool: the drill on its flange.
-        hole: where to drill; its depth and a given motion are not looked at, its branch is the only one searched.
+        hole: where to drill; its branch is the only one searched. Where its depth, or the motion that it gives, has no
+            reversal, the stroke is no less deep; else neither matters.
         settings: how; None for the defaults. Every joint keeps `min_rate` at every point, whatever the `min_rate_rule`.
 
     Returns:

@@ -17,6 +17,7 @@ import numpy as np
 from zerorev.criteria import thesis_objective
 from zerorev.evaluation import Evaluation
 from zerorev.model._units import deg_per_mm, mm
+from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Finding, HolePlan, Motion, Plan, Strokes, Verification
 from zerorev.model.plan_data import answer_data
@@ -121,7 +122,11 @@ def check_hole(
         stated and what is found.
     """
     deepest = strokes == "deepest" and stated.hole.profile is None
-    again = (plan_deepest if deepest else plan)(robot, tool, stated.hole, settings)
+    again = (
+        plan_deepest(robot, tool, _with_its_motion(stated), settings)
+        if deepest
+        else plan(robot, tool, stated.hole, settings)
+    )
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
         return None, (*differences, *findings_differ(_but(stated.findings, OF_A_PROOF), again.findings))
@@ -158,6 +163,14 @@ def check_hole(
     # of what is stated, too, where that is the same
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
     return replace(verified, subject=known), tuple(differences)
+
+
+def _with_its_motion(stated: HolePlan) -> Hole:
+    """The hole of a deepest stroke, its motion given, so that the search is sure to know of it."""
+    motion, hole = stated.motion, stated.hole
+    if motion is None or not np.allclose(motion.profile.standoff[[0, -1]], hole.depth, rtol=0, atol=1e-9):
+        return hole
+    return replace(hole, profile=motion.profile)
 
 
 def _error(message: str, hole: str | None) -> Finding:
