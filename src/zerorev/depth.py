@@ -24,7 +24,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.resized import resized, resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.free import deepest_free
+from zerorev.search.free_deepest import deepest_free
 from zerorev.search.problem import Asked
 from zerorev.search.rank import Candidate
 from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of

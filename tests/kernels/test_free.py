@@ -10,7 +10,7 @@ from oracles import free as twin
 from zerorev import kinematics
 from zerorev.kernels import field, free, segments, tube
 from zerorev.model.hole import Hole
-from zerorev.search.free import Grain, Held
+from zerorev.search.viable import Grain, Held
 
 SLOW = bool(numba.config.DISABLE_JIT)
 X = np.array([1.0, 0.0, 0.0])

@@ -65,3 +65,43 @@ def reach(robot, tool, hole, branch, psi_t, sigma, *, step, turn, steepest, min_
             return (row - 1) * step
         reached, here = arrived, there
     return longest
+
+
+def viable(robot, tool, hole, branch, sigma, psi, *, step, steepest, min_rate, depth):
+    """From which nodes of the target line legs get to a depth, by moves from node to node, row by row inwards.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: its twist plane.
+        branch: 0..7.
+        sigma: wanted signs of the outward rates, shape (6,).
+        psi: the nodes, evenly spaced [rad], shape (K,).
+        step: between two rows [m].
+        steepest: twist rate [rad/m].
+        min_rate: [rad/m].
+        depth: of the legs [m].
+
+    Returns:
+        bool, shape (K,).
+    """
+    turn = psi[1] - psi[0]
+    most = int(steepest * step / turn + 1e-9)
+    rows = round(depth / step)
+    there = rates_at(robot, tool, hole, branch, rows * step, psi)
+    good = np.any([keeps(*there, move * turn / step, sigma, min_rate) for move in range(-most, most + 1)], axis=0)
+    for row in range(rows - 1, -1, -1):
+        here = rates_at(robot, tool, hole, branch, row * step, psi)
+        leads = np.zeros_like(good)
+        for move in range(-most, most + 1):
+            slope = move * turn / step
+            lands = good & keeps(*there, slope, sigma, min_rate)
+            source = np.zeros_like(good)
+            if move >= 0:
+                source[: good.size - move] = lands[move:]
+            else:
+                source[-move:] = lands[:move]
+            if source.any():
+                leads |= source & keeps(*here, slope, sigma, min_rate)
+        good, there = leads, here
+    return good

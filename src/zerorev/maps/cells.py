@@ -17,7 +17,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion import turns_within
 from zerorev.optimum import best_motion, deepest_as_drilled
 from zerorev.prediction import narrowest
-from zerorev.search.free import SEGMENTS
+from zerorev.search.free_deepest import SEGMENTS
 from zerorev.search.rank import Candidate
 from zerorev.search.straight import target_spins
 from zerorev.search.thesis_stroke import thesis_stroke
@@ -25,7 +25,7 @@ from zerorev.search.thesis_stroke import thesis_stroke
 __all__ = ["KINDS", "KNOTS", "STATUS", "Block", "Kind", "answer", "columns_of"]
 
 SPINS = 240  # at the target in one turn, by which reach is judged
-KNOTS = 2 * SEGMENTS[-1] + 1  # breakpoints of a motion on free legs, at most
+KNOTS = 2 * SEGMENTS + 1  # breakpoints of a motion on free legs, at most
 
 STATUS = ("answered", "none", "joint_limits", "out_of_reach", "robot_base")
 """What became of a cell, by its number: answered; no such motion or stroke, though the target is reached; reached

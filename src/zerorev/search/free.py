@@ -18,88 +18,26 @@ from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.line import climb, edge, golden
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Rules, bettered, legs_through, motion_of
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
+from zerorev.search.viable import Grain, Held
 
-__all__ = ["Grain", "Held", "deepest_free", "search_free"]
+__all__ = ["SEGMENTS", "search_free"]
 
 GRID = 120  # spins at the target in one turn
 WORTH = 0.9  # of the best of the grid: what is less deep is not closed in on
 PEAKS = 4  # closed in on, at most
 CLOSING_STEPS, LAST_STEPS = 12, 8
 LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the straight lines by which rows are joined
-KEPT_BACK = (0.03, 0.1, 0.3)  # of the deepest stroke: where segments begin to be bettered
-WORTH_ANOTHER = 1.1  # how much deeper curves must get from another place than segments do from the first
 SEGMENTS = (1, 2, 4, 8, 16)  # of a leg
 ROWS = 48  # of a tube that a motion is taken out of, at least
 GUARD = float(np.deg2rad(0.2))  # [rad/m] 0.0002 deg/mm aimed at beyond the threshold
 MORE = 0.01  # by which more segments have to be better
 GUARDS = tuple(np.deg2rad([0.0, 1.0, 4.0]).tolist())  # [rad/m] up to 0.004 deg/mm for what lies between the points
-
-
-class Held(NamedTuple):
-    """What a leg is held to; a NamedTuple, so that kernels take it whole. SI units."""
-
-    lower: Array
-    upper: Array
-    min_rate: float
-    psi_bound: float  # 0: periodic
-    steepest: float
-    longest_twist: float
-
-
-class Grain(NamedTuple):
-    """How closely a tube is looked at.
-
-    Attributes:
-        step: between two rows, at most [m].
-        turn: by which an end of an interval moves from row to row, at most [rad].
-        between: two spins looked at, at most [rad].
-        finest: to which the end of a tube is closed in on [m].
-    """
-
-    step: float
-    turn: float
-    between: float
-    finest: float
-
-    @classmethod
-    def of(cls, reach: float, fineness: float, finest: float) -> Grain:
-        """In proportion to the length of the stretched arm [m]."""
-        return cls(reach / 200 / fineness, 0.4 / fineness, 0.2 / fineness, finest * reach)
-
-
-def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[float, Profile | None, int | None]:
-    """The deepest stroke with zero reversals on free legs, and a motion that reaches it.
-
-    Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin; its `branch`, if any, is the only one searched; its depth is
-            not looked at.
-        settings: `min_rate`, kept by every joint at every point; `max_twist`; `psi_bound`.
-
-    Returns:
-        depth [m], profile and branch; 0, None, None where no stroke has zero reversals.
-    """
-    problem = _Problem(robot, tool, hole, settings)
-    best: tuple[float, Profile | None, int | None] = (0.0, None, None)
-    for place in problem.deepest_places():
-        if place.depth <= best[0] * WORTH_ANOTHER:
-            break
-        for back in KEPT_BACK:
-            if place.depth * (1 - back) <= best[0]:
-                break
-            found = problem.motion(place.branch, place.psi_t, place.depth * (1 - back), "depth", SEGMENTS[-1])
-            if found is not None:
-                best = max(best, (found.depth, found.profile, place.branch), key=lambda deepest: deepest[0])
-                break
-    return best
 
 
 def search_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
@@ -131,6 +69,11 @@ class _Place(NamedTuple):
     psi_t: float
 
 
+def _grain(reach: float, fineness: float, finest: float) -> Grain:
+    """In proportion to the length of the stretched arm [m]."""
+    return Grain(reach / 200 / fineness, 0.4 / fineness, 0.2 / fineness, finest * reach)
+
+
 class _Problem:
     """One hole, and the tubes out of its target."""
 
@@ -139,8 +82,8 @@ class _Problem:
         self.arm, self.plane = robot.arm, twist_plane(robot, tool, hole)
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
         self.reach = float(robot.arm.c2 + np.hypot(robot.arm.a2, robot.arm.c3))
-        self.coarse = Grain.of(self.reach, 1, 1e-3)
-        self.fine = Grain.of(self.reach, 3, 1e-6)
+        self.coarse = _grain(self.reach, 1, 1e-3)
+        self.fine = _grain(self.reach, 3, 1e-6)
         limits = robot.limits
         self.held = Held(
             limits.lower + LIMIT_SLACK,
