@@ -159,7 +159,7 @@ def _why_none(question: Question, hole: Hole) -> int:
 
 
 def _deepest(question: Question, hole: Hole, _: int) -> Found | None:
-    found = deepest_as_drilled(question.robot, question.tool, hole, question.settings)
+    found = deepest_as_drilled(question.robot, question.tool, hole, question.settings.without_proof)
     return _stroke(found.depth, found.profile, found.branch)
 
 
@@ -207,7 +207,7 @@ def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
 
 
 def _best_motion(question: Question, hole: Hole) -> Candidate | None:
-    return best_motion(question.robot, question.tool, hole, question.settings)
+    return best_motion(question.robot, question.tool, hole, question.settings.without_proof)
 
 
 def _motion(value: float, best: Candidate) -> Found:

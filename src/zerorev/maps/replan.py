@@ -46,7 +46,7 @@ def question_of(found: Dataset) -> Question:
                 psi_bound=None if bound is None else float(rad(bound)),
                 legs=settings["legs"],
                 max_twist=float(rad_per_m(settings["max_twist_deg_per_mm"])),
-            ).without_proof,
+            ),
             reference if isinstance(reference, str) else tuple(reference),
             None if depth_mm is None else float(m(depth_mm)),
             attributes.get("seed", 0),

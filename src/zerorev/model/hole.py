@@ -119,17 +119,18 @@ def _nearest_base(target: Array, direction: Array, tool: Tool, where: str) -> Ar
     y = np.cross(z, x)
     centre = target + flange[2] * z
 
-    def distance(psi: Array) -> Array:
-        c, s = np.cos(psi)[..., None], np.sin(psi)[..., None]
-        place = centre + flange[0] * (c * x + s * y) + flange[1] * (c * y - s * x)
-        return np.asarray(np.hypot(place[..., 0], place[..., 1]))
+    # seen from above: the flange at psi = 0, and a quarter turn on
+    first, second = (flange[0] * x + flange[1] * y)[:2], (flange[0] * y - flange[1] * x)[:2]
 
-    # one smooth period: a grid finds the valley, ternary steps its bottom
+    def place(psi: Array | float) -> Array:
+        across = np.multiply.outer(np.cos(psi), first) + np.multiply.outer(np.sin(psi), second)
+        return np.asarray(centre[:2] + across)
+
+    # one smooth period: a grid finds the valley, Newton's steps its bottom
     grid = np.linspace(-np.pi, np.pi, 721)
-    low, high = (float(grid[np.argmin(distance(grid))]) + side * (grid[1] - grid[0]) for side in (-1, 1))
-    for _ in range(60):
-        third = (high - low) / 3
-        near, far = distance(np.array([low + third, high - third]))
-        low, high = (low, high - third) if near < far else (low + third, high)
-    psi = (low + high) / 2
+    psi = float(grid[np.argmin(np.linalg.norm(place(grid), axis=-1))])
+    for _ in range(8):
+        turning = np.cos(psi) * second - np.sin(psi) * first
+        bend = turning @ turning - place(psi) @ (place(psi) - centre[:2])
+        psi -= float(np.clip(place(psi) @ turning / max(bend, 1e-300), grid[0] - grid[1], grid[1] - grid[0]))
     return np.asarray(np.cos(psi) * y - np.sin(psi) * x)

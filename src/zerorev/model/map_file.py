@@ -61,7 +61,7 @@ def _question(form: MapFile, document: Document, folder: Path) -> Question:
         psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),
         legs=form.legs,
         max_twist=float(rad_per_m(form.max_twist_deg_per_mm)),
-    ).without_proof
+    )
     depth = None if form.depth_mm is None else float(m(form.depth_mm))
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
     return Question(robot, tool, form.quantity, settings, reference, depth, form.seed or 0)

@@ -30,6 +30,7 @@ from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 __all__ = ["DepthBound", "Proof", "bound_depth", "prove"]
 
 GAP = 3e-4  # of the travel: so much more than the least is proven enough
+SAME_TRAVEL = 1e-6  # relative: by so little a motion is no better
 STATED_GAP = 1e-3  # of the travel: what is called proven
 SAME_RATE = 2e-6  # relative: a threshold missed by so little is kept (`evaluation.meets_threshold` asks for half of it)
 MOST_REVERSALS = 12.0  # of all joints: what a hole without any motion is searched up to
@@ -201,8 +202,7 @@ class _Prover:
             if reason != bound_tree.CANDIDATE:
                 break
             found = self._found(search)
-            better = found is not None and accepts(found) and self.problem.order.best([found, best]) is found
-            if found is not None and better and self.allows(found):
+            if found is not None and accepts(found) and self._is_better(found, best) and self.allows(found):
                 best = found
                 search.improve(self._scaled(best), best.score.travel)
                 if first:
@@ -265,6 +265,13 @@ class _Prover:
             twist = min(twist, best.score.travel)
         postures = sorted({one // 2 for one in problem.branches})
         return Search(problem.robot.arm, problem.plane, rules, postures, twist, GAP)
+
+    def _is_better(self, found: Candidate, best: Candidate | None) -> bool:
+        """Whether a motion beats the best one by more than the last digits, by which the answer would vary."""
+        if best is None or self.problem.order.best([found, best]) is best:
+            return best is None
+        alike = self._cost(found) == self._cost(best) and found.keeps_threshold == best.keeps_threshold
+        return not (alike and self.travels and found.score.travel > best.score.travel * (1 - SAME_TRAVEL))
 
     def _is_perfect(self, motion: Candidate | None) -> bool:
         """Whether a motion has no reversal and keeps the threshold."""
