@@ -303,7 +303,7 @@ def examine(formulas, rules, psi, legs, known, first, count, groups, cuts, alive
         known: out, shape (N, KNOWN, 6).
         first: of the boxes.
         count: of the boxes.
-        groups: of stand-offs that are looked at, at most GROUPS.
+        groups: of stand-offs that are examined, at most GROUPS.
         cuts: more stand-offs, as shares of the depth, shape (M,).
         alive: out, whether a leg of a box may exist, shape (N,).
         room: low and high, each of shape (LANES,).

@@ -47,7 +47,7 @@ POSTURE, START, COUNT, CUTS = range(4)
 
 MOST_CUTS = 32
 MOST_LEGS = 400
-FINE, FINEST = 0.05, 0.003  # [rad] widths of a node below which more stand-offs are looked at
+FINE, FINEST = 0.05, 0.003  # [rad] widths of a node below which more stand-offs are examined
 TRY = 0.02  # [rad] below which a motion is tried
 NARROWEST = 1e-6  # [rad] below which a node is given up
 LEADS, LEADS_AT_MOST = 1.005, 1.05  # what is halved: what lies so close to the best

@@ -53,7 +53,7 @@ class Tree(NamedTuple):
         heap: numbers of nodes, shape (N,).
         nodes: interval of spins and value, shape (N, 3).
         lists: posture, where its slopes start and how many they are, how many cuts, shape (N, 4).
-        cuts: more stand-offs to be looked at, as shares of the depth, shape (N, MOST_CUTS).
+        cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).
         counts: see `kernels.bound_tree`, shape (8,).
         values: likewise, shape (4,).
@@ -78,7 +78,7 @@ def model_limits(robot: Robot) -> tuple[Array, Array]:
 
 
 class Search:
-    """One branch and bound; `advance` goes on with it.
+    """One branch and bound; `advance` resumes it.
 
     Args:
         arm: of the robot.
@@ -118,7 +118,7 @@ class Search:
         self.tree.values[bound_tree.BEST] = bound_tree.BIG * cost + travel
 
     def cut(self, shares: Array) -> None:
-        """Have more stand-offs looked at in the two nodes that the last candidate came from."""
+        """Have more stand-offs examined in the two nodes that the last candidate came from."""
         tree = self.tree
         for node in tree.counts[bound_tree.LAST_LEFT : bound_tree.LAST_RIGHT + 1]:
             count = int(tree.lists[node, bound_tree.CUTS])
@@ -127,7 +127,7 @@ class Search:
             tree.lists[node, bound_tree.CUTS] = count + fresh.size
 
     def advance(self, most_looks: int) -> int:
-        """Go on until there is something to say: see `kernels.bound_tree.advance`."""
+        """Continue until there is something to report: see `kernels.bound_tree.advance`."""
         while True:
             reason = int(bound_tree.advance(self.models, self.rules, self.tree, most_looks, self._work))
             if reason != bound_tree.FULL:
