@@ -104,12 +104,22 @@ def _done(thing: Any) -> Any:
 
 @contextmanager
 def interrupts_held_back() -> Iterator[None]:
-    """Hold Ctrl-C back for a moment; a process started meanwhile never gets it."""
-    if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
+    """Hold Ctrl-C back for a moment; a process started meanwhile never gets it.
+
+    What is started inherits the mask. The mask alone would not hold: it is of this thread, and where another thread
+    takes the signal, Python still interrupts the main one.
+    """
+    handler = signal.getsignal(signal.SIGINT)
+    if sys.platform == "win32" or threading.current_thread() is not threading.main_thread() or not callable(handler):
         yield
         return
+    came: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: came.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, handler)
+        if came:
+            signal.raise_signal(signal.SIGINT)

@@ -65,3 +65,61 @@ def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(tmp_p
     index = next((tmp_path / "cache").rglob("*.nbi")).read_bytes()
     assert b"Wanted" in index
     assert b"Asked" not in index
+
+
+SLOW = """
+import sys
+from zerorev.kernels._jit import kernel
+
+@kernel
+def twice(x):
+    return 2.0 * x
+
+@kernel
+def summed(xs):
+    total = 0.0
+    for x in sorted(xs):  # takes its time to compile
+        total += twice(x)
+    return total
+
+print("ready", flush=True)
+sys.stdin.readline()
+summed([1.0, 2.0])
+print(sum(count for made in (twice, summed) for count in made.stats.cache_misses.values()))
+"""
+
+
+@compiled
+def test_processes_that_need_the_same_kernels_at_once_compile_each_once(tmp_path: Path):
+    (tmp_path / "asking.py").write_text(SLOW)
+    started = [
+        subprocess.Popen(
+            [sys.executable, "-c", "import asking"],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        for _ in range(3)
+    ]
+    for process in started:
+        assert process.stdout
+        assert process.stdout.readline() == "ready\n"
+    for process in started:
+        assert process.stdin
+        process.stdin.write("\n")
+        process.stdin.flush()
+    told = [process.communicate(timeout=120)[0] for process in started]
+    assert sorted(told) == ["0\n", "0\n", "2\n"]
+
+
+@compiled
+def test_a_cache_that_cannot_be_locked_is_done_without(tmp_path: Path):
+    folder = tmp_path / "no folder"
+    folder.write_text("")
+    with _jit._turn.needed():
+        assert not _jit._turn.taken(str(folder))
+    with _jit._turn.needed():
+        assert _jit._turn.taken(str(tmp_path))
+        assert not _jit._turn.taken(str(tmp_path))

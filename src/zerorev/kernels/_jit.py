@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ from typing import Any
 import numba
 from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 
@@ -40,6 +43,12 @@ class _Cache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         rtsys.initialize(target_context)  # what allocates arrays
+        found = self._loaded(sig, target_context)
+        if found is None and _turn.taken(self._cache_path):
+            found = self._loaded(sig, target_context)
+        return found
+
+    def _loaded(self, sig: Any, target_context: Any) -> Any:
         try:
             with self._guard_against_spurious_io_errors():
                 return self._load_overload(sig, target_context)  # type: ignore[no-untyped-call]
@@ -47,6 +56,48 @@ class _Cache(FunctionCache):
             # of another version of zerorev, in which a class that a kernel is given was called otherwise
             self.flush()  # type: ignore[no-untyped-call]
             return None
+
+
+class _Turn:
+    """The turn to compile: one process at a time, so that all that share a cache run the same machine code.
+
+    The same kernel compiled twice need not round alike: how what it calls is inlined depends on whether that was
+    compiled in the same process or loaded. Two processes at once would each keep its own, and the cache the later one.
+    """
+
+    def __init__(self) -> None:
+        self._depth = 0
+        self._file: int | None = None
+
+    @contextmanager
+    def needed(self) -> Iterator[None]:
+        """Around the compilation of a kernel and of all that it calls; a turn that was taken ends with it."""
+        with global_compiler_lock:  # one thread at a time
+            self._depth += 1
+            try:
+                yield
+            finally:
+                self._depth -= 1
+                if not self._depth and self._file is not None:
+                    os.close(self._file)
+                    self._file = None
+
+    def taken(self, folder: str) -> bool:
+        """Wait for the turn; whether others may have compiled meanwhile."""
+        if self._file is not None:
+            return False
+        try:
+            import fcntl
+
+            os.makedirs(folder, exist_ok=True)
+            self._file = os.open(Path(folder, "kernels.lock"), os.O_RDWR | os.O_CREAT, 0o666)
+            fcntl.flock(self._file, fcntl.LOCK_EX)
+        except (ImportError, OSError):
+            return False  # no such locks here, or no cache to share
+        return True
+
+
+_turn = _Turn()
 
 
 @cache
@@ -61,6 +112,13 @@ def kernel(function: Callable[..., Any]) -> Any:
     compiled = _compiled(function)
     if isinstance(compiled, Dispatcher):  # not so with NUMBA_DISABLE_JIT
         compiled._cache = _Cache(function)  # type: ignore[attr-defined]
+        compile_or_load = compiled.compile
+
+        def compile_in_turn(sig: Any) -> Any:
+            with _turn.needed():
+                return compile_or_load(sig)
+
+        compiled.compile = compile_in_turn  # type: ignore[method-assign]
     return compiled
 
 
