@@ -11,8 +11,8 @@ import pytest
 import zerorev as zr
 from oracles import boxes, holes
 from zerorev import kinematics
-from zerorev.kernels import bound_legs as kernels
-from zerorev.kernels import bound_tree
+from zerorev.kernels import bound_boxes as kernels
+from zerorev.kernels import bound_legs, bound_tree
 from zerorev.kernels.intervals import LANES
 from zerorev.model.files import read_job
 from zerorev.search.bounds.proof import bound_depth, prove
@@ -38,10 +38,11 @@ def examined(drilled, posture, psi, slopes, *, min_rate, groups=1):
     robot, tool, hole, _ = drilled.all
     rules = rules_of(drilled, min_rate=min_rate)
     tree = Search(robot.arm, kinematics.twist_plane(robot, tool, hole), rules, [posture], 1.0, 0.0)
-    legs, known, _, _, alive, room, _ = _room()
+    legs, known, _, _, room, _ = _room()
     legs[0, kernels.LOW], legs[0, kernels.HIGH] = slopes
-    kernels.examine(tree.models[posture], rules, np.array(psi), legs, known, 0, 1, groups, np.zeros(0), alive, room)
-    return (legs[0], known[0]) if alive[0] else None
+    model = tree.models[posture]
+    left, _ = bound_legs.examine(model, rules, np.array(psi), legs, known, 1, groups, np.zeros(0), room)
+    return (legs[0], known[0]) if left else None
 
 
 def random_box(rng, drilled):
@@ -118,12 +119,12 @@ class TestABox:
             rules = rules_of(drilled, min_rate=1.0)
             for posture in range(4):
                 tree = Search(robot.arm, kinematics.twist_plane(robot, tool, hole), rules, [posture], 1.0, 0.0)
-                legs, known, _, _, alive, room, _ = _room()
+                legs, known, _, _, room, _ = _room()
                 legs[0, kernels.LOW] = legs[0, kernels.HIGH] = slope
                 model = tree.models[posture]
-                kernels.examine(model, rules, np.array([psi, psi]), legs, known, 0, 1, 1, np.zeros(0), alive, room)
+                left, _ = bound_legs.examine(model, rules, np.array([psi, psi]), legs, known, 1, 1, np.zeros(0), room)
                 truth = boxes.leg(drilled, posture, psi, slope)
-                if truth is None or not alive[0]:
+                if truth is None or not left:
                     continue
                 at = np.array([kernels.share(0, j) for j in range(kernels.LOOKS)])
                 for j, share in enumerate(at):

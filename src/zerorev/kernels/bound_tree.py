@@ -12,15 +12,15 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
-from zerorev.kernels.bound_legs import (
+from zerorev.kernels.bound_boxes import (
     BACK,
     BOXES,
     BY_PSI_HIGH,
     BY_PSI_LOW,
     BY_SLOPE,
-    COLUMNS,
     FITS,
     FORTH,
+    GROUPS,
     HIGH,
     KNOWN,
     LEAST,
@@ -29,8 +29,8 @@ from zerorev.kernels.bound_legs import (
     MAY_FORTH,
     TWIST,
     VALUE_OF,
-    examine,
 )  # fmt: skip
+from zerorev.kernels.bound_legs import examine, move
 
 BIG = 1e4  # more than any travel [rad]
 NOTHING = 1e300
@@ -51,8 +51,7 @@ FINE, FINEST = 0.05, 0.003  # [rad] widths of a node below which more stand-offs
 TRY = 0.02  # [rad] below which a motion is tried
 NARROWEST = 1e-6  # [rad] below which a node is given up
 LEADS, LEADS_AT_MOST = 1.005, 1.05  # what is halved: what lies so close to the best
-SLOPES_TRIED = 5
-TRY_GROUPS = 8
+SLOPES_TRIED = BOXES  # of either leg
 SELDOM = 16  # motions tried that seem to fail, of which one is reported all the same
 
 
@@ -191,38 +190,13 @@ def best_pair(rules, tree, legs, known, count, half_psi, room):  # type: ignore[
 
 
 @kernel
-def _move(legs, known, to, from_legs, from_known, at):  # type: ignore[no-untyped-def]
-    """Put a box in another place; element by element, because Numba takes seconds to compile an array's assignment."""
-    for k in range(COLUMNS):
-        legs[to, k] = from_legs[at, k]
-    for row in range(KNOWN):
-        for i in range(6):
-            known[to, row, i] = from_known[at, row, i]
-
-
-@kernel
-def examine_all(formulas, rules, tree, psi, legs, known, count, groups, cuts, alive, room):  # type: ignore[no-untyped-def]
-    """Examine boxes and close the ranks of those that are left; returns how many these are."""
-    for first in range(0, count, BOXES):
-        some = min(BOXES, count - first)
-        tree.counts[LOOKS_DONE] += examine(formulas, rules, psi, legs, known, first, some, groups, cuts, alive, room)
-    left = 0
-    for n in range(count):
-        if alive[n]:
-            if left < n:
-                _move(legs, known, left, legs, known, n)
-            left += 1
-    return left
-
-
-@kernel
 def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
     """Examine a node: halve the slopes that lead, until they are as narrow as its spins.
 
     Returns:
         the value of the node, its best two boxes, and how many boxes are left; no boxes where none is of interest.
     """
-    legs, known, fresh, fresh_known, alive, room, pair_room = work
+    legs, known, fresh, fresh_known, room, pair_room = work
     psi = np.array([tree.nodes[node, NODE_LOW], tree.nodes[node, NODE_HIGH]])
     width = psi[1] - psi[0]
     groups = 4 if width < FINEST else (2 if width < FINE else 1)
@@ -230,7 +204,8 @@ def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
     start, count = tree.lists[node, START], tree.lists[node, COUNT]
     for n in range(count):
         legs[n, LOW], legs[n, HIGH] = tree.slopes[start + n, 0], tree.slopes[start + n, 1]
-    count = examine_all(formulas, rules, tree, psi, legs, known, count, groups, cuts, alive, room)
+    count, looks = examine(formulas, rules, psi, legs, known, count, groups, cuts, room)
+    tree.counts[LOOKS_DONE] += looks
     half_psi = 0.5 * width + 1e-14
     while True:
         best, first, second = best_pair(rules, tree, legs, known, count, half_psi, pair_room)
@@ -251,16 +226,17 @@ def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
                 halves += 2
             else:
                 if kept < n:
-                    _move(legs, known, kept, legs, known, n)
+                    move(legs, known, kept, legs, known, n)
                 kept += 1
         count = kept
         if halves == 0:
             # those dropped have moved the others: which two are the best must be found again
             best, first, second = best_pair(rules, tree, legs, known, count, half_psi, pair_room)
             return best, first, second, count
-        halves = examine_all(formulas, rules, tree, psi, fresh, fresh_known, halves, groups, cuts, alive, room)
+        halves, looks = examine(formulas, rules, psi, fresh, fresh_known, halves, groups, cuts, room)
+        tree.counts[LOOKS_DONE] += looks
         for n in range(halves):
-            _move(legs, known, count, fresh, fresh_known, n)
+            move(legs, known, count, fresh, fresh_known, n)
             count += 1
 
 
@@ -281,34 +257,34 @@ def try_motion(formulas, rules, tree, node, one, other, work, out):  # type: ign
     Returns:
         the value of the two, as far as points on them show it; NOTHING where there are none.
     """
-    _, _, fresh, known, alive, room, _ = work
+    _, _, legs, known, room, _ = work
     width = tree.nodes[node, NODE_HIGH] - tree.nodes[node, NODE_LOW]
     middle = 0.5 * (tree.nodes[node, NODE_LOW] + tree.nodes[node, NODE_HIGH])
     psi = np.array([middle, middle])
+    cuts = tree.cuts[node, : tree.lists[node, CUTS]]
+    ends = [0, 0, 0]
     for k in range(2):
         low, high = (one[0], one[1]) if k == 0 else (other[0], other[1])
         around = max(high - low, 1e-12 * width / rules.depth)
+        start = ends[k]
         for e in range(SLOPES_TRIED):
             slope = 0.5 * (low + high) + 1.2 * around * (2.0 * e / (SLOPES_TRIED - 1) - 1.0)
-            fresh[SLOPES_TRIED * k + e, LOW] = fresh[SLOPES_TRIED * k + e, HIGH] = slope
-    cuts = tree.cuts[node, : tree.lists[node, CUTS]]
-    for first in range(0, 2 * SLOPES_TRIED, BOXES):
-        some = min(BOXES, 2 * SLOPES_TRIED - first)
-        tree.counts[LOOKS_DONE] += examine(
-            formulas, rules, psi, fresh, known, first, some, TRY_GROUPS, cuts, alive, room
-        )
+            legs[start + e, LOW] = legs[start + e, HIGH] = slope
+        count, looks = examine(formulas, rules, psi, legs[start:], known[start:], SLOPES_TRIED, GROUPS, cuts, room)
+        tree.counts[LOOKS_DONE] += looks
+        ends[k + 1] = start + count
+        if count == 0:
+            return NOTHING
     best, limit = NOTHING, threshold(rules, tree)
-    for n in range(SLOPES_TRIED):
-        for m in range(SLOPES_TRIED, 2 * SLOPES_TRIED):
-            if not (alive[n] and alive[m]):
-                continue
+    for n in range(ends[1]):
+        for m in range(ends[1], ends[2]):
             cost = pair_cost(rules, known[n], known[m])
             if cost >= NOTHING:
                 continue
-            value = BIG * cost + pair_travel(fresh[n], fresh[m], 0.0)
+            value = BIG * cost + pair_travel(legs[n], legs[m], 0.0)
             if value < best and value < limit:
                 best = value
-                out[0], out[1], out[2] = middle, fresh[n, LOW], fresh[m, LOW]
+                out[0], out[1], out[2] = middle, legs[n, LOW], legs[m, LOW]
     return best
 
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kernels import bound_legs, bound_tree, intervals
+from zerorev.kernels import bound_boxes, bound_tree, intervals
 from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry, Robot
@@ -189,11 +189,10 @@ def _room() -> tuple[Any, ...]:
     """What the loop works in."""
     most = bound_tree.MOST_LEGS
     return (
-        np.zeros((most, bound_legs.COLUMNS)),
-        np.zeros((most, bound_legs.KNOWN, 6), dtype=np.int64),
-        np.zeros((most, bound_legs.COLUMNS)),
-        np.zeros((most, bound_legs.KNOWN, 6), dtype=np.int64),
-        np.zeros(most, dtype=np.bool_),
-        (np.zeros(intervals.LANES), np.zeros(intervals.LANES)),
+        np.zeros((most, bound_boxes.COLUMNS)),
+        np.zeros((most, bound_boxes.KNOWN, 6), dtype=np.int64),
+        np.zeros((most, bound_boxes.COLUMNS)),
+        np.zeros((most, bound_boxes.KNOWN, 6), dtype=np.int64),
+        (np.zeros(most, dtype=np.bool_), np.zeros(intervals.LANES), np.zeros(intervals.LANES)),
         (np.zeros(most, dtype=np.int64), np.zeros(most, dtype=np.int64), np.zeros((most, most))),
     )
