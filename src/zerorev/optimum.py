@@ -20,6 +20,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Optimality
 from zerorev.model.profile import Profile
+from zerorev.model.proof_tree import ProofTree
 from zerorev.model.resized import resized
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
@@ -57,7 +58,7 @@ class Optimum:
     optimality: Optimality | None = None
 
 
-def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum:
+def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None) -> Optimum:
     """The best motion of a hole, and its deepest stroke; stand-offs are counted from the hole's own target.
 
     Args:
@@ -65,8 +66,9 @@ def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Optimum
         tool: the drill.
         hole: what to drill; its `branch`, if any, is the only one searched; a given motion is left aside.
         settings: how; with `weights` their sum decides, else the objective.
+        log: out, the trees of the proofs, for the hole down to the programmed corner; or None.
     """
-    pool = _Pool(robot, tool, hole, settings)
+    pool = _Pool(robot, tool, hole, settings, log)
     best = pool.best()
     pool.deepest = pool.bounded(pool.raised(best))
     if best is not None and best.reversals and pool.deepest.depth >= pool.hole.depth:
@@ -81,7 +83,9 @@ def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Can
     return pool.from_the_target(pool.best())
 
 
-def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Deepest:
+def deepest_as_drilled(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None
+) -> Deepest:
     """The deepest stroke of `optimum` alone.
 
     Args:
@@ -90,8 +94,9 @@ def deepest_as_drilled(robot: Robot, tool: Tool, hole: Hole, settings: Settings)
         hole: where to drill; where its depth, searched for or with the motion that it gives, is deeper than the deepest
             stroke found otherwise and has no reversal, the stroke is found from there.
         settings: as for `optimum`.
+        log: likewise.
     """
-    pool = _Pool(robot, tool, hole, settings)
+    pool = _Pool(robot, tool, hole, settings, log)
     if pool.deepest.depth >= pool.hole.depth:
         return pool.as_drilled(pool.bounded(pool.deepest))
     found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
@@ -133,7 +138,10 @@ class _Pool:
     The tolerances of the searches are made for that size. Weighted criteria are not: they count in units of their own.
     """
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
+    def __init__(
+        self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None
+    ) -> None:
+        self.log = log
         self.size = 1.0 if settings.weights else robot.size
         self.real = Order(robot, tool, replace(hole, profile=None), settings)
         if self.size != 1:
@@ -245,7 +253,9 @@ class _Pool:
         if self.settings.proof_boxes == 0 or self.settings.legs == "free":
             return best, None
         problem = Problem(self.robot, self.tool, self.hole, self.settings)
-        proof = prove(problem, best, self.settings.proof_boxes, self.allows)
+        trees = None if self.log is None else list[ProofTree]()
+        proof = prove(problem, best, self.settings.proof_boxes, self.allows, trees)
+        self.keep(trees)
         return proof.best, proof.optimality
 
     def bounded(self, deepest: Deepest) -> Deepest:
@@ -255,12 +265,19 @@ class _Pool:
             return deepest
         problem = Problem(self.robot, self.tool, self.hole, self.settings)
         while boxes > 0:
-            bound = bound_depth(problem, deepest.depth, boxes)
+            trees = None if self.log is None else list[ProofTree]()
+            bound = bound_depth(problem, deepest.depth, boxes, trees)
+            self.keep(trees)
             boxes -= bound.boxes
             if bound.deeper is None:
                 return replace(deepest, at_most=bound.at_most)
             deepest = deepened(self.robot, self.tool, self.hole, self.settings, bound.deeper)
         return deepest
+
+    def keep(self, trees: list[ProofTree] | None) -> None:
+        """Keep the trees of a proof, at the arm's own size."""
+        if self.log is not None and trees is not None:
+            self.log += [tree.resized(self.size) for tree in trees]
 
     def raised(self, best: Candidate | None) -> Deepest:
         """The deepest stroke, the best motion taken into account."""

@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, need
+from zerorev.cli.proofs import Proofs
 from zerorev.cli.tolerances import Tolerances
 from zerorev.errors import InputError
 from zerorev.report import terminal
@@ -30,6 +31,8 @@ def check(
     tolerance_mm: float | None = None,
     tolerance_deg: float | None = None,
     tolerance_ratio: float | None = None,
+    proof: bool = False,
+    proof_sample: Whole | None = None,
     json: bool = False,
 ) -> int:
     """Check a plan again, from the robot, the tool and the holes that it states.
@@ -50,8 +53,11 @@ def check(
             stated one along each of its axes, and that is turned by at most --tolerance-deg.
         tolerance_deg: Beside --tolerance-mm: the greatest angle [deg], about any axis through the stated origin.
         tolerance_ratio: Beside --tolerance: how many mm of it go with 1 deg; 10 by default.
+        proof: Check what the plan states of its optimality, and of its deepest strokes: search again with a log of all
+            that the search leaves out, and check the log box by box in ball arithmetic. A hole takes minutes.
+        proof_sample: With --proof: check so many boxes of each log, at random, instead of all.
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
-            of each hole of the program.
+            of each hole of the program; with --proof, `proofs` besides.
     """
     from zerorev.model.checked_files import remember
     from zerorev.model.files import plan_from_text, plan_to_json, write_plan
@@ -62,8 +68,10 @@ def check(
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
     asked = Tolerances(tolerance, tolerance_mm, tolerance_deg, tolerance_ratio)
     asked.check(certify=certify, program=program is not None)
-    if certify:
-        need("flint", "python-flint", "--certify", "certify")
+    proofs = Proofs(proof, proof_sample)
+    proofs.check(program=program is not None)
+    if certify or proof:
+        need("flint", "python-flint", "--certify" if certify else "--proof", "certify")
     if certify and program is None:
         check_file(plan)
     text = read_text(plan, PLAN_FILE)
@@ -93,17 +101,19 @@ def check(
         write_plan(checked.marked(rewritten=True), plan)
         remember(read_text(plan, PLAN_FILE))
     answer = checked.marked() if certify else without_proofs(checked.marked())
+    found = proofs.checked(checked.plan)
     if json and program is not None:
         terminal.print_json(_proofs(plan_to_json(answer), written.name))
     elif json:
-        terminal.print_json(plan_to_json(answer))
+        terminal.print_json(plan_to_json(answer) | proofs.as_json(found))
     else:
         _show_plan(answer)
         if program is not None:
             terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
         elif certify:
             terminal.say(f"check and certificates written into {plan}")
-    return _verdict(answer, certify=certify) or asked.verdict(answer)
+        proofs.show(found)
+    return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
 
 
 @app.command

@@ -38,15 +38,18 @@ NOTHING = 1e300
 # why the loop returns
 EMPTY, PROVEN, LEFT_OVER, BUDGET, CANDIDATE, FULL = range(6)
 # tree.counts
-HEAP, NODES, SLOPES, LOOKS_DONE, LAST_LEFT, LAST_RIGHT, EXAMINED, TRIED = range(8)
+HEAP, NODES, SLOPES, LOOKS_DONE, LAST_LEFT, LAST_RIGHT, EXAMINED, TRIED, LOGGED, COUNTS = range(10)
 # tree.values
 BEST, LEFT, CANDIDATE_VALUE, GAP = range(4)
 # columns of tree.nodes, and of tree.lists
 NODE_LOW, NODE_HIGH, NODE_VALUE = range(3)
-POSTURE, START, COUNT, CUTS = range(4)
+POSTURE, START, COUNT, CUTS, PARENT, LISTED = range(6)
+# columns of tree.closed
+CLOSED_NODE, CLOSED_LOW, CLOSED_HIGH, CLOSED_DEAD, CLOSED = range(5)
 
 MOST_CUTS = 32
 MOST_LEGS = 400
+MOST_CLOSED = 32 * MOST_LEGS  # boxes that one node can close
 FINE, FINEST = 0.05, 0.003  # [rad] widths of a node below which more stand-offs are examined
 TRY = 0.02  # [rad] below which a motion is tried
 NARROWEST = 1e-6  # [rad] below which a node is given up
@@ -89,6 +92,18 @@ def pop(tree):  # type: ignore[no-untyped-def]
         k = below
     heap[k] = node
     return top
+
+
+@kernel
+def close(tree, node, low, high, dead):  # type: ignore[no-untyped-def]
+    """Log that a box is left out of a node: no leg of it may exist, or no pair with it is of interest."""
+    if tree.closed.shape[0] == 0:
+        return
+    k = tree.counts[LOGGED]
+    tree.counts[LOGGED] += 1
+    if k < tree.closed.shape[0]:
+        tree.closed[k, CLOSED_NODE], tree.closed[k, CLOSED_DEAD] = node, dead
+        tree.closed[k, CLOSED_LOW], tree.closed[k, CLOSED_HIGH] = low, high
 
 
 @kernel
@@ -190,6 +205,24 @@ def best_pair(rules, tree, legs, known, count, half_psi, room):  # type: ignore[
 
 
 @kernel
+def examined(formulas, rules, tree, node, psi, legs, known, count, groups, cuts, room):  # type: ignore[no-untyped-def]
+    """Examine boxes of a node, and log those that are dead; returns how many are left, in their order."""
+    logged = tree.closed.shape[0] > 0
+    before = np.empty((count if logged else 0, 2))
+    for n in range(before.shape[0]):
+        before[n, 0], before[n, 1] = legs[n, LOW], legs[n, HIGH]
+    left, looks = examine(formulas, rules, psi, legs, known, count, groups, cuts, room)
+    tree.counts[LOOKS_DONE] += looks
+    k = 0
+    for n in range(before.shape[0]):
+        if k < left and legs[k, LOW] == before[n, 0]:
+            k += 1
+        else:
+            close(tree, node, before[n, 0], before[n, 1], 1.0)
+    return left
+
+
+@kernel
 def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
     """Examine a node: halve the slopes that lead, until they are as narrow as its spins.
 
@@ -204,12 +237,13 @@ def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
     start, count = tree.lists[node, START], tree.lists[node, COUNT]
     for n in range(count):
         legs[n, LOW], legs[n, HIGH] = tree.slopes[start + n, 0], tree.slopes[start + n, 1]
-    count, looks = examine(formulas, rules, psi, legs, known, count, groups, cuts, room)
-    tree.counts[LOOKS_DONE] += looks
+    count = examined(formulas, rules, tree, node, psi, legs, known, count, groups, cuts, room)
     half_psi = 0.5 * width + 1e-14
     while True:
         best, first, second = best_pair(rules, tree, legs, known, count, half_psi, pair_room)
         if first < 0:
+            for n in range(count):
+                close(tree, node, legs[n, LOW], legs[n, HIGH], 0.0)
             return best, first, second, 0
         following = tree.nodes[tree.heap[0], NODE_VALUE] if tree.counts[HEAP] > 0 else NOTHING
         whole = BIG * np.floor(best / BIG + 1e-9)
@@ -217,6 +251,7 @@ def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
         kept = halves = 0
         for n in range(count):
             if legs[n, VALUE_OF] >= NOTHING:
+                close(tree, node, legs[n, LOW], legs[n, HIGH], 0.0)
                 continue
             wide = (legs[n, HIGH] - legs[n, LOW]) * rules.depth > width * 1.0001
             if wide and legs[n, VALUE_OF] <= upto and halves + kept + count - n < MOST_LEGS:
@@ -233,8 +268,7 @@ def narrowed(formulas, rules, tree, node, work):  # type: ignore[no-untyped-def]
             # those dropped have moved the others: which two are the best must be found again
             best, first, second = best_pair(rules, tree, legs, known, count, half_psi, pair_room)
             return best, first, second, count
-        halves, looks = examine(formulas, rules, psi, fresh, fresh_known, halves, groups, cuts, room)
-        tree.counts[LOOKS_DONE] += looks
+        halves = examined(formulas, rules, tree, node, psi, fresh, fresh_known, halves, groups, cuts, room)
         for n in range(halves):
             move(legs, known, count, fresh, fresh_known, n)
             count += 1
@@ -318,6 +352,8 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
             return BUDGET
         if tree.counts[NODES] + 2 > tree.nodes.shape[0] or tree.counts[SLOPES] + MOST_LEGS > tree.slopes.shape[0]:
             return FULL
+        if 0 < tree.closed.shape[0] < tree.counts[LOGGED] + MOST_CLOSED:
+            return FULL
         node = pop(tree)
         tree.counts[EXAMINED] += 1
         posture = tree.lists[node, POSTURE]
@@ -356,6 +392,8 @@ def _divide(tree, node, value, count, legs):  # type: ignore[no-untyped-def]
         if legs[n, VALUE_OF] < NOTHING:
             tree.slopes[start + kept, 0], tree.slopes[start + kept, 1] = legs[n, LOW], legs[n, HIGH]
             kept += 1
+        else:
+            close(tree, node, legs[n, LOW], legs[n, HIGH], 0.0)
     tree.counts[SLOPES] += kept
     low, high = tree.nodes[node, NODE_LOW], tree.nodes[node, NODE_HIGH]
     middle = 0.5 * (low + high)
@@ -367,7 +405,7 @@ def _divide(tree, node, value, count, legs):  # type: ignore[no-untyped-def]
         tree.nodes[new, NODE_VALUE] = value
         tree.lists[new, POSTURE] = tree.lists[node, POSTURE]
         tree.lists[new, START], tree.lists[new, COUNT] = start, kept
-        tree.lists[new, CUTS] = tree.lists[node, CUTS]
+        tree.lists[new, CUTS], tree.lists[new, PARENT] = tree.lists[node, CUTS], node
         for k in range(tree.lists[node, CUTS]):
             tree.cuts[new, k] = tree.cuts[node, k]
         tree.counts[LAST_LEFT + half] = new

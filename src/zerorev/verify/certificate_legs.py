@@ -11,7 +11,7 @@ from zerorev.model.tool import Tool
 from zerorev.verify.certificate_path import Motion, Rig, Segment, motion_of
 from zerorev.verify.certificate_vector import across, columns, combined, cross, onto, scaled, vector
 
-__all__ = ["planned_motion"]
+__all__ = ["planned_motion", "rig_of"]
 
 
 def planned_motion(
@@ -31,7 +31,7 @@ def planned_motion(
         passing_blend: the same at the other inner breakpoints.
     """
     out = scaled(vector(-hole.direction))
-    rig = _rig(arm, tool, hole, out)
+    rig = rig_of(arm, tool, hole, out)
     standoff, psi = ([arb(float(x)) for x in values] for values in (profile.standoff, profile.psi))
     tips = [combined((vector(hole.target), arb(1)), (out, s)) for s in standoff]
     segments = []
@@ -54,8 +54,8 @@ def planned_motion(
     return motion_of(segments, 0, profile.corner)
 
 
-def _rig(arm: ArmGeometry, tool: Tool, hole: Hole, z: tuple[arb, arb, arb]) -> Rig:
-    """Lever and flange at psi = 0."""
+def rig_of(arm: ArmGeometry, tool: Tool, hole: Hole, z: tuple[arb, arb, arb]) -> Rig:
+    """Lever and flange at psi = 0; z is the unit vector out of the hole."""
     y = across(vector(hole.psi_zero), z)
     x = cross(y, z)
     in_flange = columns(tool.T_flange_tcp[:3, :3])

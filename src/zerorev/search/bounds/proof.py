@@ -18,7 +18,9 @@ from zerorev.kernels import bound_tree
 from zerorev.kinematics import joint_rates
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Optimality
+from zerorev.model.proof_tree import ProofTree
 from zerorev.motion import outward_rates
+from zerorev.search.bounds.log import logged_tree
 from zerorev.search.bounds.tree import Rules as BoundRules
 from zerorev.search.bounds.tree import Search, model_limits
 from zerorev.search.cut_short import descended
@@ -39,6 +41,7 @@ MOST_FRESH_CUTS = 8
 SLIDING_LOOKS = 33  # points of a leg
 ENOUGH_LACK = 1e-6  # [rad/m]
 DEEPER, FINER, DEEPEST = 1e-2, 1e-3, 1.0  # shares of the deepest stroke by which a deeper one is refuted
+MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
 SHALLOWEST = 1e-4  # of the arm's reach: a stroke that is none
 
 
@@ -58,7 +61,11 @@ class Proof:
 
 
 def prove(
-    problem: Problem, best: Candidate | None, boxes: int, allows: Callable[[Candidate], bool] = lambda _: True
+    problem: Problem,
+    best: Candidate | None,
+    boxes: int,
+    allows: Callable[[Candidate], bool] = lambda _: True,
+    log: list[ProofTree] | None = None,
 ) -> Proof:
     """Bound what motions of straight legs can do, and improve on the best one where that is possible.
 
@@ -67,11 +74,12 @@ def prove(
         best: the best motion known, of straight legs, or None.
         boxes: budget, in boxes of legs that are examined.
         allows: whether a motion will do; what it demands of motions is not in the bounds, which hold all the same.
+        log: out, the tree of each search that was made, or None.
 
     Returns:
         the best motion and what is proven of it. With criteria other than travel only the reversals are bounded.
     """
-    return _Prover(problem, boxes, allows).run(best)
+    return _Prover(problem, boxes, allows, log).run(best)
 
 
 @dataclass(frozen=True)
@@ -105,13 +113,14 @@ class DepthBound:
     boxes: int
 
 
-def bound_depth(problem: Problem, depth: float, boxes: int) -> DepthBound:
+def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree] | None = None) -> DepthBound:
     """Refute strokes deeper than one, or find one (theory §4): what is impossible at a depth is so at any greater one.
 
     Args:
         problem: one hole; its depth is left aside.
         depth: the deepest stroke known [m]; 0: none.
         boxes: budget, in boxes of legs that are examined.
+        log: out, the tree of each search that was made, or None.
     """
     spent, at_most = 0, None
     shallowest = SHALLOWEST * problem.robot.reach
@@ -120,7 +129,7 @@ def bound_depth(problem: Problem, depth: float, boxes: int) -> DepthBound:
     while steps and spent < boxes:
         step = steps.pop(0)
         share = boxes - spent if not steps else (boxes - spent) // 2
-        outcome = _any_motion(problem, max(depth * (1 + step), shallowest), share)
+        outcome = _any_motion(problem, max(depth * (1 + step), shallowest), share, log)
         spent += outcome.boxes
         if outcome.motion is not None:
             return DepthBound(None, outcome.motion, spent)
@@ -139,11 +148,11 @@ class _Outcome(NamedTuple):
     boxes: int
 
 
-def _any_motion(problem: Problem, depth: float, boxes: int) -> _Outcome:
+def _any_motion(problem: Problem, depth: float, boxes: int, log: list[ProofTree] | None) -> _Outcome:
     """Whether any two straight legs of a depth have no reversal and keep the threshold at every point."""
     settings = replace(problem.settings, min_rate_rule="pointwise", weights=())
     there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
-    prover = _Prover(there, boxes)
+    prover = _Prover(there, boxes, log=log)
     least = prover.least(None, most=0.0, first=True)
     return _Outcome(least.best, least.ended and least.best is None, prover.spent)
 
@@ -151,8 +160,14 @@ def _any_motion(problem: Problem, depth: float, boxes: int) -> _Outcome:
 class _Prover:
     """One hole's proof."""
 
-    def __init__(self, problem: Problem, boxes: int, allows: Callable[[Candidate], bool] = lambda _: True) -> None:
-        self.problem, self.budget, self.spent, self.allows = problem, boxes, 0, allows
+    def __init__(
+        self,
+        problem: Problem,
+        boxes: int,
+        allows: Callable[[Candidate], bool] = lambda _: True,
+        log: list[ProofTree] | None = None,
+    ) -> None:
+        self.problem, self.budget, self.spent, self.allows, self.log = problem, boxes, 0, allows, log
         self.scale = _cost_scale(problem.weights)
         settings = problem.settings
         self.travels = settings.objective == "travel" and not settings.weights
@@ -207,6 +222,7 @@ class _Prover:
                 search.improve(self._scaled(best), best.score.travel)
                 if first:
                     break
+        self._note(search)
         cost = most if best is None else self._cost(best)
         bound = search.bound - bound_tree.BIG * cost * self.scale
         return _Least(best, bound, reason in (bound_tree.EMPTY, bound_tree.PROVEN))
@@ -227,6 +243,7 @@ class _Prover:
                 best = found
                 most = self._cost(best)
                 search.improve(self._scaled(best), 0.0)
+        self._note(search)
         decided = reason in (bound_tree.EMPTY, bound_tree.PROVEN)
         return best, most if decided else min(self._cost_bound(search.bound), most), decided
 
@@ -236,6 +253,11 @@ class _Prover:
         reason = search.advance(before + self.budget - self.spent)
         self.spent += search.looks - before
         return reason
+
+    def _note(self, search: Search) -> None:
+        """Keep the tree of a search that has ended."""
+        if self.log is not None:
+            self.log.append(logged_tree(search, self.problem.hole.branch))
 
     def _search(self, min_rate: float, most: float, best: Candidate | None) -> Search:
         problem = self.problem
@@ -259,12 +281,12 @@ class _Prover:
         )
         # a leg travels at least its twist, and a joint that reverses n times at most n + 1 times its range
         ranges, reversals = upper - lower, most / max(float(problem.weights.min()), 1e-3)
-        twist = float(ranges.sum() + min(reversals, MOST_REVERSALS) * ranges.max())
+        twist = float(ranges.sum() + min(reversals, MOST_REVERSALS) * ranges.max()) * MORE_TWIST
         if self._is_perfect(best):
             assert best is not None
             twist = min(twist, best.score.travel)
         postures = sorted({one // 2 for one in problem.branches})
-        return Search(problem.robot.arm, problem.plane, rules, postures, twist, GAP)
+        return Search(problem.robot.arm, problem.plane, rules, postures, twist, GAP, logged=self.log is not None)
 
     def _is_better(self, found: Candidate, best: Candidate | None) -> bool:
         """Whether a motion beats the best one by more than the last digits, by which the answer would vary."""

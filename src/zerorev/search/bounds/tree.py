@@ -52,10 +52,12 @@ class Tree(NamedTuple):
     Attributes:
         heap: numbers of nodes, shape (N,).
         nodes: interval of spins and value, shape (N, 3).
-        lists: posture, where its slopes start and how many they are, how many cuts, shape (N, 4).
+        lists: posture, where its slopes start and how many they are, how many cuts, parent or -1, shape (N, 5).
         cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).
-        counts: see `kernels.bound_tree`, shape (8,).
+        closed: log of the boxes that are left out: node, interval of slopes, whether no leg of it may exist (1) or no
+            pair with it is of interest (0), shape (C, 4); C = 0: none is kept.
+        counts: see `kernels.bound_tree`, shape (9,).
         values: likewise, shape (4,).
         candidate: spin at the target, two slopes, posture, shape (4,).
     """
@@ -65,6 +67,7 @@ class Tree(NamedTuple):
     lists: npt.NDArray[np.int64]
     cuts: Array
     slopes: Array
+    closed: Array
     counts: npt.NDArray[np.int64]
     values: Array
     candidate: Array
@@ -87,16 +90,18 @@ class Search:
         postures: which of the four count.
         twist: greatest twist of a leg [rad].
         gap: what a motion may travel more than the least, relative, and still be proven.
+        logged: whether the boxes that are left out are kept, for `search.bounds.log`.
     """
 
     def __init__(
-        self, arm: ArmGeometry, plane: TwistPlane, rules: Rules, postures: list[int], twist: float, gap: float
-    ) -> None:
+        self, arm: ArmGeometry, plane: TwistPlane, rules: Rules, postures: list[int], twist: float, gap: float,
+        *, logged: bool = False,
+    ) -> None:  # fmt: skip
         self.rules = rules
         self.models: tuple[Formulas, ...] = tuple(
             formulas(arm, plane, posture, threshold=rules.min_rate > 0) for posture in range(4)
         )
-        self.tree = _planted(rules, postures, twist)
+        self.tree = _planted(rules, postures, twist, bound_tree.MOST_CLOSED if logged else 0)
         self.tree.values[bound_tree.GAP] = gap
         self._work = _room()
 
@@ -135,7 +140,7 @@ class Search:
             self.tree = _grown(self.tree)
 
 
-def _planted(rules: Rules, postures: list[int], twist: float) -> Tree:
+def _planted(rules: Rules, postures: list[int], twist: float, log: int) -> Tree:
     """All spins and slopes, in a few coarse nodes."""
     bound = rules.psi_bound or np.pi
     spins = np.linspace(-bound, bound, max(2, int(np.ceil(SPINS * bound / np.pi))) + 1)
@@ -146,10 +151,11 @@ def _planted(rules: Rules, postures: list[int], twist: float) -> Tree:
     tree = Tree(
         heap=np.zeros(room, dtype=np.int64),
         nodes=np.zeros((room, 3)),
-        lists=np.zeros((room, 4), dtype=np.int64),
+        lists=np.zeros((room, bound_tree.LISTED), dtype=np.int64),
         cuts=np.zeros((room, bound_tree.MOST_CUTS)),
         slopes=np.zeros((max(4 * FIRST_ROOM, 2 * count), 2)),
-        counts=np.zeros(8, dtype=np.int64),
+        closed=np.zeros((log, bound_tree.CLOSED)),
+        counts=np.zeros(bound_tree.COUNTS, dtype=np.int64),
         values=np.array([bound_tree.NOTHING, bound_tree.NOTHING, bound_tree.NOTHING, 0.0]),
         candidate=np.zeros(4),
     )
@@ -160,6 +166,7 @@ def _planted(rules: Rules, postures: list[int], twist: float) -> Tree:
     tree.nodes[:first, :2] = np.tile(np.stack([spins[:-1], spins[1:]], axis=1), (len(postures), 1))
     tree.lists[:first, bound_tree.POSTURE] = np.repeat(postures, spins.size - 1)
     tree.lists[:first, bound_tree.COUNT] = count
+    tree.lists[:first, bound_tree.PARENT] = -1
     tree.counts[bound_tree.HEAP] = tree.counts[bound_tree.NODES] = first
     return tree
 
@@ -181,7 +188,7 @@ def _grown(tree: Tree) -> Tree:
 
     return tree._replace(
         heap=doubled(tree.heap), nodes=doubled(tree.nodes), lists=doubled(tree.lists), cuts=doubled(tree.cuts),
-        slopes=doubled(tree.slopes),
+        slopes=doubled(tree.slopes), closed=doubled(tree.closed),
     )  # fmt: skip
 
 
