@@ -56,7 +56,7 @@ class Deepest:
         profile: two legs of that stroke, or None.
         branch: 0..7, or None.
         beyond_cap: of free legs, how deep straight ones go that twist more than `max_twist` [m]; 0 where no deeper.
-        at_most: no stroke of straight legs is as deep [m]; None: not proven.
+        at_most: no stroke of such legs is as deep [m]; None: not proven.
     """
 
     depth: float

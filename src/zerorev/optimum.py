@@ -24,6 +24,7 @@ from zerorev.model.proof_tree import ProofTree
 from zerorev.model.resized import resized
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.bounds.proof import bound_depth, prove
 from zerorev.search.cut_short import cut_short, descended, legs_swapped
 from zerorev.search.exact import search, without_reversal
@@ -259,11 +260,13 @@ class _Pool:
         return proof.best, proof.optimality
 
     def bounded(self, deepest: Deepest) -> Deepest:
-        """The deepest stroke of straight legs with a bound on it; a deeper one where the proof finds it."""
+        """The deepest stroke with a bound on it; a deeper one of straight legs where the proof finds it."""
         boxes = self.settings.proof_boxes
-        if boxes == 0 or self.settings.legs == "free" or self.settings.keep_lead_in:
+        if boxes == 0 or self.settings.keep_lead_in:
             return deepest
         problem = Problem(self.robot, self.tool, self.hole, self.settings)
+        if self.settings.legs == "free":
+            return replace(deepest, at_most=bound_free_depth(problem, deepest.depth, boxes).at_most)
         while boxes > 0:
             trees = None if self.log is None else list[ProofTree]()
             bound = bound_depth(problem, deepest.depth, boxes, trees)

@@ -53,7 +53,8 @@ class Settings:
         feed_plunge: feed of the plunge [m/s].
         feed_retract: feed of the retract [m/s].
         spindle_rpm: speed of the spindle [rev/min], or None where the program need not know it.
-        proof_boxes: how many boxes of legs a proof of the optimum, or of the deepest stroke, may examine; 0: no proof.
+        proof_boxes: how many boxes of legs a proof of the optimum, or of the deepest stroke, may examine, or where legs
+            are free twice as many cells of the twist plane; 0: no proof.
     """
 
     min_rate: float = float(np.deg2rad(10.0))

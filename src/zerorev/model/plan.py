@@ -255,7 +255,7 @@ class HolePlan:
         measures: what the criteria measure of the motion, or None.
         deepest: the deepest stroke without a reversal [m], on the hole's own branch if it names one; 0 where there is
             none, None where it was not looked for.
-        deepest_at_most: no stroke of straight legs without a reversal is as deep [m]; None: not proven.
+        deepest_at_most: no stroke without a reversal of legs of the kind asked for is as deep [m]; None: not proven.
         optimality: how much better a motion could be, or None where that was not asked.
         critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
             finite where a joint has none; None without a motion.

@@ -194,7 +194,8 @@ class PlanHole(Form):
     )
     deepest_at_most_mm: NotNegative | None = Field(
         default=None,
-        description="a number [mm]: no stroke of straight legs without a reversal is as deep; or null: not proven",
+        description="a number [mm]: no stroke without a reversal is as deep, of straight or free legs as the settings"
+        " say; or null: not proven",
     )
     psi_zero: Three = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
     given: GivenForm | None = Field(

@@ -129,12 +129,13 @@ class Sheet:
     inputs: dict[str, int] = field(default_factory=dict)
     known: dict[Key, int] = field(default_factory=dict)
     slopes: dict[int, Expression | None] = field(default_factory=dict)
+    outward: dict[int, Expression | None] = field(default_factory=dict)
 
     def input(self, name: str) -> Expression:
-        """A row that is filled in before the tape runs; its derivative by the spin is 0."""
+        """A row that is filled in before the tape runs; its derivatives by the spin and by the stand-off are 0."""
         self.lines.append((-1, (), None))
         self.inputs[name] = len(self.lines) - 1
-        self.slopes[self.inputs[name]] = None
+        self.slopes[self.inputs[name]] = self.outward[self.inputs[name]] = None
         return Expression(self, self.inputs[name])
 
     def turning(self, cosine: str, sine: str) -> tuple[Expression, Expression]:
@@ -142,6 +143,12 @@ class Sheet:
         c, s = self.input(cosine), self.input(sine)
         self.slopes[c.number], self.slopes[s.number] = -s, c
         return c, s
+
+    def moving(self, standoff: str, one: str) -> Expression:
+        """The stand-off, as an input; another input is its derivative by itself, to be filled with 1."""
+        s = self.input(standoff)
+        self.outward[s.number] = self.input(one)
+        return s
 
     def write(self, op: int, *arguments: Expression, constant: Constant | None = None) -> Expression:
         """An expression, or the one that says the same already."""
@@ -166,15 +173,22 @@ class Sheet:
 
     def slope(self, expression: Expression) -> Expression | None:
         """The derivative by the spin; None where it is 0 for certain."""
-        number = expression.number
-        if number not in self.slopes:
-            self.slopes[number] = self._slope(expression)
-        return self.slopes[number]
+        return self._derivative(expression, self.slopes)
 
-    def _slope(self, expression: Expression) -> Expression | None:
+    def outward_slope(self, expression: Expression) -> Expression | None:
+        """The derivative by the stand-off; None where it is 0 for certain."""
+        return self._derivative(expression, self.outward)
+
+    def _derivative(self, expression: Expression, known: dict[int, Expression | None]) -> Expression | None:
+        number = expression.number
+        if number not in known:
+            known[number] = self._slope(expression, known)
+        return known[number]
+
+    def _slope(self, expression: Expression, known: dict[int, Expression | None]) -> Expression | None:
         op, numbers, constant = self.lines[expression.number]
         parts = [Expression(self, number) for number in numbers]
-        by = [self.slope(part) for part in parts]
+        by = [self._derivative(part, known) for part in parts]
         if all(slope is None for slope in by):
             return None
         if op == ops.ADD:

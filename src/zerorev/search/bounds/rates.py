@@ -24,7 +24,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
 from zerorev.search.bounds.expressions import Expression, Number, Sheet, Tape, added
 
-__all__ = ["Formulas", "formulas"]
+__all__ = ["Formulas", "PostureFormulas", "formulas", "numbers_of"]
 
 DIGITS = 50
 Indices = npt.NDArray[np.int64]
@@ -78,7 +78,7 @@ class Formulas(NamedTuple):
 INPUTS = ("cosine", "sine", "cosine_c", "sine_c", "standoff", "slope", "slope_c", "half_psi", "half_slope", "threshold")
 
 
-def _numbers(arm: ArmGeometry, plane: TwistPlane) -> dict[str, float]:
+def numbers_of(arm: ArmGeometry, plane: TwistPlane) -> dict[str, float]:
     """Constants of a hole, each the double nearest to its exact value.
 
     z: drill axis, out of the material; foot: wrist centre at stand-off 0 without its lever [m]; leverc, levers: cosine
@@ -117,7 +117,7 @@ class _Point(NamedTuple):
     joints: list[tuple[Expression, Expression]]  # cosine and sine of each model angle, up to a common factor
 
 
-class _Arm:
+class PostureFormulas:
     """The formulas of a posture; `zero` names the constants that are 0."""
 
     def __init__(self, sheet: Sheet, posture: int, zero: frozenset[str]) -> None:
@@ -230,7 +230,7 @@ def _tape(posture: int, threshold: bool, angles: bool, zero: frozenset[str]) -> 
     sheet = Sheet()
     c, s = sheet.turning("cosine", "sine")
     cc, sc, standoff, u, uc, half_psi, half_slope, m = (sheet.input(name) for name in INPUTS[2:])
-    arm = _Arm(sheet, posture, zero)
+    arm = PostureFormulas(sheet, posture, zero)
     box = arm.at(c, s, standoff, ops.OUT_OF_REACH, joints=angles)
     centre = arm.at(cc, sc, standoff, ops.NOWHERE, joints=angles)
     out: dict[str, Expression] = {}
@@ -270,7 +270,7 @@ def _swept(posture: int, zero: frozenset[str]) -> Tape:
     sheet = Sheet()
     c, s = sheet.turning("cosine", "sine")
     standoff, u = sheet.input("standoff"), sheet.input("slope")
-    point = _Arm(sheet, posture, zero).at(c, s, standoff, ops.NOWHERE, joints=False)
+    point = PostureFormulas(sheet, posture, zero).at(c, s, standoff, ops.NOWHERE, joints=False)
     return sheet.compiled(
         {f"swept{i}": (N + u * M).over(den) for i, (N, M, den) in enumerate(zip(*point[:3], strict=True))}
     )
@@ -285,7 +285,7 @@ def formulas(arm: ArmGeometry, plane: TwistPlane, posture: int, *, threshold: bo
         posture: 0..3.
         threshold: whether there is a motion threshold.
     """
-    numbers = _numbers(arm, plane)
+    numbers = numbers_of(arm, plane)
     zero = frozenset(name for name, value in numbers.items() if value == 0.0)
     signs, angles = _tape(posture, threshold, False, zero), _tape(posture, threshold, True, zero)
     sweep = _swept(posture, zero)
