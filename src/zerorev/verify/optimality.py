@@ -35,8 +35,8 @@ Indices = npt.NDArray[np.int64]
 
 MOST_PARTS = 4000  # that a box, or a pair of boxes, is cut into
 NARROWEST = 1e-9  # [rad] of spin and of twist, below which a box is not cut
-FINE = 0.05  # [rad] of spin, below which more stand-offs are examined
-DENSE = tuple(k / 32 for k in range(1, 32))
+FINE, FINEST = 0.05, 0.003  # [rad] of spin, below which more stand-offs are examined
+DENSE = tuple(k / 32 for k in range(1, 32, 2))
 MOST_TOLD = 10  # failures
 
 
@@ -211,7 +211,8 @@ class _Check:
     def legs_of(self, number: int, box: Box) -> Legs:
         """The legs of a box on a node."""
         self.parts += 1
-        more = [*self.tree.cuts[number].tolist(), *(MID_SHARES if box.high - box.low < FINE else ())]
+        wide, more = box.high - box.low, self.tree.cuts[number].tolist()
+        more += [*(MID_SHARES if wide < FINE else ()), *(DENSE if wide < FINEST else ())]
         return Legs(self.of[int(self.tree.postures[number])], box, more)
 
     def kept(self, number: int, box: Box) -> Legs:
@@ -224,7 +225,7 @@ class _Check:
     def middle(self, number: int, box: Box) -> Legs:
         """The leg in the middle of a box, examined densely."""
         psi, slope = 0.5 * (box.low + box.high), 0.5 * (box.least + box.most)
-        more = sorted({*self.tree.cuts[number].tolist(), *MID_SHARES, *DENSE})
+        more = [*self.tree.cuts[number].tolist(), *MID_SHARES, *DENSE]
         legs = Legs(self.of[int(self.tree.postures[number])], Box(psi, psi, slope, slope), more)
         while legs.look_closer():
             pass

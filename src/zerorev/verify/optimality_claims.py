@@ -94,8 +94,8 @@ class _Rules:
         if not self.alike(claim, min_rate, depth, deeper=False):
             return False
         scale = self.scale(claim)
-        if claim.value >= NO_VALUE:
-            return claim.most_cost >= cost * scale * (1 - SAME)
+        if claim.most_cost < cost * scale * (1 - SAME):
+            return False
         return claim.value >= PER_REVERSAL * cost * scale + travel * (1 - SAME) - SAME
 
     def exclude(self, claim: Claim, cost: float, min_rate: float, depth: float, *, deeper: bool = False) -> bool:

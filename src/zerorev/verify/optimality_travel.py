@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from flint import arb
 
-from zerorev.verify.optimality_arm import directions
+from zerorev.verify.optimality_arm import Directions, directions
 from zerorev.verify.optimality_box import SIX, Examiner, Extent, Look, denominators
 
 __all__ = ["ANY_TURN", "Travel", "Turns", "travel_of"]
@@ -17,7 +17,7 @@ __all__ = ["ANY_TURN", "Travel", "Turns", "travel_of"]
 ANY_TURN = (-100, 100)
 NO_TURN = (1, 0)
 ROUNDING = 1e-9  # [turns] more than the rounding of what limits are compared with
-STEEP = 0.5  # [rad] if a joint may vary by more over the box, its direction is tried, too
+STEEP = 0.02  # [rad] if a joint may vary by more over the box, its direction is tried, too
 
 Turns = tuple[tuple[int, int], ...]
 
@@ -123,23 +123,36 @@ def _angles(of: Examiner, extent: Extent, look: Look) -> list[_Angle]:
     half = extent.half_at(look.standoff)
     psi = extent.psi + look.standoff * extent.slope
     there = directions(of.arm, (psi.cos(), psi.sin()), centre)
+    by_psi = [M / den for M, den in zip(whole.spinning, denominators(whole), strict=True)]
+    steepness = [(slope * half).abs_upper() for slope in by_psi]
+    anywhere = None
+    if not all(varies < STEEP for varies in steepness):
+        spun = psi + half * arb(0, 1)
+        anywhere = directions(of.arm, (spun.cos(), spun.sin()), whole)
+        # a centre that is out of reach has no joints: any other direction of the box will do
+        there = [
+            one if one[0].is_finite() and one[1].is_finite() else (other[0].mid(), other[1].mid())
+            for one, other in zip(there, anywhere, strict=True)
+        ]
     middle = [_angle(sine, cosine) for cosine, sine in there]
     middle[2] = middle[2] - middle[1]
-    by_psi = [M / den for M, den in zip(whole.spinning, denominators(whole), strict=True)]
-    anywhere = None
-    found = []
-    for i in SIX:
-        varies = (by_psi[i] * half).abs_upper()
-        angle = _Angle(middle[i], by_psi[i], arb(0), varies) if varies.is_finite() else NOWHERE
-        if not varies < STEEP and middle[i].is_finite():
-            if anywhere is None:
-                spun = psi + half * arb(0, 1)
-                anywhere = directions(of.arm, (spun.cos(), spun.sin()), whole)
-            off = sum((_between(there[k], anywhere[k]) for k in ((1, 2) if i == 2 else (i,))), arb(0))
-            if off < varies / 2 or (off.is_finite() and not varies.is_finite()):
-                angle = _Angle(middle[i], arb(0), off, off)
-        found.append(angle if middle[i].is_finite() else NOWHERE)
-    return found
+    reached = centre.height.is_finite()
+    return [
+        _angle_of(i, middle[i], by_psi[i], steepness[i] if reached or i == 0 else arb.pos_inf(), there, anywhere)
+        for i in SIX
+    ]
+
+
+def _angle_of(i: int, middle: arb, by_psi: arb, varies: arb, there: Directions, anywhere: Directions | None) -> _Angle:
+    """A joint by its derivative, or where that is steep by its direction, whichever tells more."""
+    if not middle.is_finite():
+        return NOWHERE
+    angle = _Angle(middle, by_psi, arb(0), varies) if varies.is_finite() else NOWHERE
+    if varies < STEEP or anywhere is None:
+        return angle
+    off = sum((_between(there[k], anywhere[k]) for k in ((1, 2) if i == 2 else (i,))), arb(0))
+    nearer = off < varies / 2 or (off.is_finite() and not varies.is_finite())
+    return _Angle(middle, arb(0), off, off) if nearer else angle
 
 
 def _between(one: tuple[arb, arb], other: tuple[arb, arb]) -> arb:
