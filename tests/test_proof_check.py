@@ -92,14 +92,24 @@ class TestStatements:
         assert len(checks) == 2
         assert all(one.confirmed for one in checks)
 
-    def test_of_an_arm_of_another_size(self):
-        drilled = next(
-            one for seed in range(20) if (one := holes.random_hole(seed)).robot.size > 1 and one.settings.min_rate > 0
-        )
-        hole = drilled.deep(0.3 * drilled.hole.depth).hole
-        checks = check_proofs(planned(drilled.robot, drilled.tool, hole), sample=FEW)
-        assert checks
+    def test_of_an_arm_of_another_size(self, robot, tool):
+        """It is planned at size 1, and its trees are checked at its own."""
+        settings = zr.Settings()
+        same = holes.Drilled(robot, tool, second(), settings)
+        large = holes.scaled(same, 4.0)
+        assert large.robot.size == 4
+        plan = plan_job(Job(large.robot, large.tool, (large.hole,), large.settings))
+        checks = check_proofs(plan, sample=FEW)
+        assert len(checks) == 2
         assert all(one.confirmed for one in checks)
+
+    def test_of_a_depth_file(self, robot, tool):
+        plan = plan_job(Job(robot, tool, (second(),), zr.Settings()), strokes="deepest")
+        assert [one.field for one in check_proofs(plan, sample=FEW) if one.confirmed] == ["deepest_at_most_mm"]
+
+    def test_what_is_said_of_free_legs_rests_on_no_tree(self, plan):
+        free = replace(plan, settings=replace(plan.settings, legs="free"))
+        assert check_proofs(free, sample=FEW) == []
 
     @pytest.mark.long
     @pytest.mark.parametrize("name", ["zero_missed_30018", "zero_missed_20023", "deepest_20008"])

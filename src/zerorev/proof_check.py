@@ -46,7 +46,7 @@ def check_proofs(
     """Check what a plan states of the optimality of its holes, and of their deepest strokes.
 
     Args:
-        plan: with straight legs; of free legs nothing is stated.
+        plan: with straight legs; what is stated of free legs does not rest on a tree.
         sample: check so many boxes of each proof, at random; None: all.
         seed: of the sample.
         progress: called with (holes checked, holes in all) before the first and after each.
@@ -78,7 +78,8 @@ def logged_trees(plan: Plan, stated: HolePlan) -> list[ProofTree]:
         stated: one of its holes.
     """
     trees: list[ProofTree] = []
-    if (stated.optimality is None and stated.deepest_at_most is None) or too_short(plan.robot, stated.hole):
+    nothing = stated.optimality is None and stated.deepest_at_most is None
+    if nothing or plan.settings.legs == "free" or too_short(plan.robot, stated.hole):
         return trees
     hole = stated.hole
     if stated.optimality is None:

@@ -52,7 +52,7 @@ class Proofs(NamedTuple):
     def show(self, found: list[StatementCheck]) -> None:
         """One line for each statement."""
         if self.wanted and not found:
-            terminal.say("the plan states nothing of its optimality")
+            terminal.say("the plan states nothing of straight legs that rests on a proof")
         for one in found:
             terminal.say(f"{one.hole}: {one.words}: {_outcome(one)}")
             for failure in one.proof.failures if one.proof else ():

@@ -39,13 +39,15 @@ def down_to_the_corner(hole: Hole, settings: Settings) -> Hole:
 
 
 def statements(stated: HolePlan, settings: Settings, trees: Sequence[ProofTree]) -> Iterator[Statement]:
-    """All that a hole states of its optimality and that needs a proof.
+    """All that a hole states of its optimality and that is proven by a tree: nothing where legs are free.
 
     Args:
         stated: the hole's answer.
         settings: as planned.
         trees: of the hole down to the programmed corner.
     """
+    if settings.legs == "free":
+        return
     rules = _Rules(stated, settings)
     at_most = stated.deepest_at_most
     if at_most is not None:
