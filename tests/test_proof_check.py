@@ -128,6 +128,14 @@ class TestStatements:
         assert checks
         assert not any(one.proof is None or one.proof.verdict == "refuted" for one in checks)
 
+    @pytest.mark.soak
+    @pytest.mark.parametrize("seed", range(40))
+    def test_some_boxes_of_hostile_holes(self, seed):
+        """Also where the budget did not suffice: what is stated nevertheless is proven."""
+        drilled = holes.hostile_hole(seed)
+        checks = check_proofs(plan_job(Job(drilled.robot, drilled.tool, (drilled.hole,), drilled.settings)), sample=60)
+        assert not any(one.proof is None or one.proof.verdict == "refuted" for one in checks)
+
 
 class TestTheCommand:
     @pytest.fixture

@@ -14,7 +14,7 @@ from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["Drilled", "random_hole"]
+__all__ = ["Drilled", "hostile_hole", "random_hole"]
 
 ROBOTS = [read_robot(name) for name in robot_names()]
 THESIS_DRILL = read_tool("thesis_drill")
@@ -72,6 +72,40 @@ def random_hole(seed, *, legs="straight", narrowed=False):
         robot = replace(robot, limits=replace(limits, lower=lower, upper=lower + width))
     min_rate = float(np.deg2rad(10.0)) / size * (seed // len(ROBOTS) % 2)
     return Drilled(robot, tool, hole, Settings(min_rate=min_rate, legs=legs))
+
+
+def hostile_hole(seed):
+    """A hole near a singularity of the wrist, of the elbow or of axis 1, or with limits of a few degrees; any depth.
+
+    By turns in this order; every fifth seed has weights of reversals, and half of the holes the motion threshold off.
+    """
+    rng = np.random.default_rng([1, seed])
+    robot = ROBOTS[seed % len(ROBOTS)]
+    arm, limits, kind = robot.arm, robot.limits, seed % 4
+    size = (arm.c2 + arm.c3) / 0.7
+    while True:
+        rotation = rotation_rpy(*rng.uniform(-np.pi, np.pi, 3))
+        tool = Tool("random", transform(rotation, size * rng.uniform([-0.2, -0.2, 0.05], [0.2, 0.2, 0.25])))
+        joints = rng.uniform(limits.lower, limits.upper)
+        if kind == 0:
+            joints[4] = 0.03 * rng.normal()
+        if kind == 1:  # the arm is stretched where the forearm's offset makes good for itself
+            stretched = -np.arctan2(arm.a2, arm.c3) + 0.05 * rng.normal()
+            joints[2] = np.clip(arm.sign[2] * (stretched + arm.offset[2]), limits.lower[2], limits.upper[2])
+        T = kinematics.forward(robot, joints) @ tool.T_flange_tcp
+        depth = size * 10.0 ** rng.uniform(np.log10(0.0005), np.log10(0.1))
+        hole = Hole(f"hostile {seed}", T[:3, 3], -T[:3, 2], depth, psi_zero=T[:3, 1])
+        wrist = T @ np.linalg.inv(tool.T_flange_tcp) @ np.array([0.0, 0.0, -arm.c4, 1.0])
+        near = np.hypot(wrist[0], wrist[1]) < 0.12 * size
+        if kinematics.wrist_offset(robot, tool) > 0.01 * size and (near or kind != 2):
+            break
+    if kind == 3:
+        width = np.deg2rad(rng.uniform(4, 40, 6))
+        lower = np.clip(joints - width * rng.uniform(0.2, 0.8, 6), limits.lower, limits.upper - width)
+        robot = replace(robot, limits=replace(limits, lower=lower, upper=lower + width))
+    weights = tuple(float(w) for w in rng.choice([0.5, 1.0, 2.0, 3.0], 6)) if seed % 5 == 0 else (1.0,) * 6
+    settings = Settings(min_rate=float(np.deg2rad(10.0)) / size * (seed // 4 % 2), reversal_weights=weights)
+    return Drilled(robot, tool, hole, settings)
 
 
 def scaled(drilled, factor):

@@ -13,6 +13,8 @@ from oracles.proof_trees import THESIS, around, by_hand, logged, without_node
 from zerorev import kinematics
 from zerorev.errors import InputError
 from zerorev.model.proof_tree import NO_VALUE, Claim
+from zerorev.search.bounds.proof import prove
+from zerorev.search.problem import Problem
 
 pytest.importorskip("flint")
 
@@ -204,6 +206,22 @@ class TestALie:
         best, _ = second
         *node, slopes = around(best, NO_VALUE)
         assert "have less than the value" in self.told(kuka, drill, by_hand(*node, slopes, [False, False]))
+
+
+class TestAnUnsoundSearch:
+    """Its log is whole, but what it rests on is not so: a sample of its boxes shows that."""
+
+    def test_that_believes_in_narrower_limits(self, kuka, drill):
+        limits = kuka.limits
+        middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
+        narrow = replace(kuka, limits=replace(limits, lower=middle - 0.6 * half, upper=middle + 0.6 * half))
+        trees = []
+        prove(Problem(narrow, drill, position(1), zr.Settings(min_rate=0.0)), None, 100_000, log=trees)
+        tree = trees[0]
+        assert check_tree(narrow, drill, position(1), tree, sample=20).verdict == "confirmed"
+        check = check_tree(kuka, drill, position(1), tree, sample=80)
+        assert check.verdict == "refuted"
+        assert any("was not found to be" in failure for failure in check.failures)
 
 
 class TestATreeThatLeavesSomethingOut:
