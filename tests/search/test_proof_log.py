@@ -45,7 +45,7 @@ def test_it_is_whole(robot, tool):
             parts = np.diff(closed).sum() + np.diff(listed(tree, half)).sum()
             assert parts == pytest.approx(np.diff(listed(tree, node)).sum(), rel=1e-12)
             divided += 1
-    assert divided > 40
+    assert divided > 20
 
 
 def listed(tree, node):

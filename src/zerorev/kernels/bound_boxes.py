@@ -16,8 +16,8 @@ from zerorev.kernels.intervals import LANES, cos_sin_over
 LOOKS = 8  # stand-offs of one look
 BOXES = LANES // LOOKS
 
-# columns of a box of legs
-LOW, HIGH, LEAST, BY_PSI_LOW, BY_PSI_HIGH, BY_SLOPE, TWIST, VALUE_OF, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+# columns of a box of legs; STRETCH: how much of the depth its stand-offs are spread over
+LOW, HIGH, LEAST, BY_PSI_LOW, BY_PSI_HIGH, BY_SLOPE, TWIST, VALUE_OF, STRETCH, COLUMNS = range(10)
 # what is known of its joints: least turns if it leaves the target forwards, or backwards; whether it may keep the
 # threshold forwards, or backwards; turns that fit the limits, on either wrist flip
 FORTH, BACK, MAY_FORTH, MAY_BACK, FITS, FITS_FLIPPED, KNOWN = range(7)
@@ -43,7 +43,7 @@ def share(group, look):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, low, high):  # type: ignore[no-untyped-def]
+def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, spread, low, high):  # type: ignore[no-untyped-def]
     """Fill in the inputs of a tape for a few boxes.
 
     Args:
@@ -56,6 +56,7 @@ def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, lo
         first: of the boxes.
         count: of the boxes, at most BOXES.
         standoffs: shape (LOOKS,) [m].
+        spread: whether each box has them drawn in by its STRETCH.
         low: room, shape (LANES,).
         high: room, shape (LANES,).
     """
@@ -64,9 +65,10 @@ def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, lo
     for lane in range(LANES):
         box, look = first + min(lane // LOOKS, count - 1), lane % LOOKS
         a, b = boxes[box, LOW], boxes[box, HIGH]
-        s = t = standoffs[look]
+        stretch = boxes[box, STRETCH] if spread else 1.0
+        s = t = standoffs[look] * stretch
         if sweeping:
-            t = standoffs[min(look + 1, LOOKS - 1)]
+            t = standoffs[min(look + 1, LOOKS - 1)] * stretch
         low[lane] = psi[0] + min(min(s * a, t * a), min(s * b, t * b)) - EDGE
         high[lane] = psi[1] + max(max(s * a, t * a), max(s * b, t * b)) + EDGE
         _fill(rows, inputs[_STANDOFF], lane, s, t)

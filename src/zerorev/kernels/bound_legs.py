@@ -18,6 +18,7 @@ from zerorev.kernels.bound_boxes import (
     BY_PSI_LOW,
     BY_SLOPE,
     COLUMNS,
+    EDGE,
     FITS,
     FITS_FLIPPED,
     FORTH,
@@ -30,6 +31,7 @@ from zerorev.kernels.bound_boxes import (
     MAY_FORTH,
     NEVER,
     PAD,
+    STRETCH,
     TWIST,
     clear,
     place,
@@ -38,6 +40,8 @@ from zerorev.kernels.bound_boxes import (
 from zerorev.kernels.bound_travel import examine_travel
 from zerorev.kernels.intervals import LANES, OUT_OF_REACH, VALUE, run
 from zerorev.kernels.legs import NIL
+
+FIRST_TURN = 1.5 * np.pi  # [rad] of twist, to which the stand-offs of steeper legs are drawn in
 
 
 @kernel
@@ -72,7 +76,7 @@ def examine(formulas, rules, psi, legs, known, count, groups, cuts, room):  # ty
                 standoffs[j] = rules.depth * cuts[min(LOOKS * (group - groups) + j, cuts.shape[0] - 1)]
         for first in range(0, count, BOXES):
             some = min(BOXES, count - first)
-            _run(formulas, group == 0, rules, psi, legs, first, some, standoffs, low, high)
+            _run(formulas, group == 0, rules, psi, legs, first, some, standoffs, group < groups, low, high)
             for box in range(some):
                 n = first + box
                 alive[n] = judge_signs(formulas, group == 0, rules, box, group < groups, known[n])
@@ -97,6 +101,8 @@ def _begin(rules, psi, legs, known):  # type: ignore[no-untyped-def]
     a, b = legs[LOW], legs[HIGH]
     # the tool's angular velocity is the sum of the joints' rates times unit axes: a leg travels its twist
     legs[TWIST] = max(max(a, -b), 0.0) * rules.depth
+    # where the spin goes round more than once, the first turn shows what reverses
+    legs[STRETCH] = min(1.0, FIRST_TURN / (max(abs(a), abs(b)) * rules.depth + EDGE))
     outside = psi[0] + a * rules.depth > rules.psi_bound + PAD or psi[1] + b * rules.depth < -rules.psi_bound - PAD
     return not (rules.psi_bound > 0.0 and outside)
 
@@ -124,12 +130,12 @@ def move(legs, known, to, from_legs, from_known, at):  # type: ignore[no-untyped
 
 
 @kernel
-def _run(formulas, first_look, rules, psi, legs, first, count, standoffs, low, high):  # type: ignore[no-untyped-def]
+def _run(formulas, first_look, rules, psi, legs, first, count, standoffs, spread, low, high):  # type: ignore[no-untyped-def]
     """Run the tape `angles` at the first look, `signs` afterwards."""
     tape = 1 if first_look else 0
     rows, unknown, constants = formulas.rows, formulas.unknown, formulas.constants[formulas.starts[tape] :]
     clear(unknown)
-    place(rows, formulas.inputs[tape], False, rules, psi, legs, first, count, standoffs, low, high)
+    place(rows, formulas.inputs[tape], False, rules, psi, legs, first, count, standoffs, spread, low, high)
     if first_look:
         run(formulas.angles, constants, rows, unknown)
     else:

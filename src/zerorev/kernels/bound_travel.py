@@ -22,6 +22,7 @@ from zerorev.kernels.bound_boxes import (
     MAY_BACK,
     MAY_FORTH,
     PAD,
+    STRETCH,
     clear,
     place,
 )  # fmt: skip
@@ -44,21 +45,23 @@ def examine_travel(formulas, rules, psi, legs, known, first, count, standoffs, a
         some = some or alive[n]
     if not some:
         return
-    rows, unknown = formulas.sweep_rows, formulas.sweep_unknown
+    rows, unknown, at = formulas.sweep_rows, formulas.sweep_unknown, np.empty(LOOKS)
     clear(unknown)
-    place(rows, formulas.inputs[2], True, rules, psi, legs, first, count, standoffs, low, high)
+    place(rows, formulas.inputs[2], True, rules, psi, legs, first, count, standoffs, True, low, high)
     run(formulas.sweep, formulas.constants[formulas.starts[2] :], rows, unknown)
     for box in range(count):
         n = first + box
         if not alive[n]:
             continue
+        for j in range(LOOKS):
+            at[j] = standoffs[j] * legs[n, STRETCH]
         for i in range(6):
             row = formulas.swept[i]
             for j in range(LOOKS - 1):
                 lane = box * LOOKS + j
                 most = max(abs(rows[row, lane]), abs(rows[row, LANES + lane]))
-                swept[i, j] = UNKNOWN if unknown[VALUE, lane] != 0.0 else most * (standoffs[j + 1] - standoffs[j])
-        alive[n] = judge_travel(formulas, rules, psi, box, standoffs, legs[n], known[n], swept)
+                swept[i, j] = UNKNOWN if unknown[VALUE, lane] != 0.0 else most * (at[j + 1] - at[j])
+        alive[n] = judge_travel(formulas, rules, psi, box, at, legs[n], known[n], swept)
 
 
 @kernel
@@ -66,7 +69,7 @@ def judge_travel(formulas, rules, psi, box, standoffs, legs, known, swept):  # t
     """What the angles say of a box: the least travel, how it varies over the box, and the turns that fit the limits.
 
     Args:
-        formulas: whose tape `angles` was run on stand-offs from the target to the outer end.
+        formulas: whose tape `angles` was run on stand-offs from the target outwards.
         rules: whose limits count.
         psi: interval of spins at the target, shape (2,).
         box: which one, of those that were placed.

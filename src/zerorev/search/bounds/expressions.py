@@ -223,6 +223,10 @@ class Sheet:
         """One by another that is not negative; a lane where that may be zero becomes unknown."""
         return self._divided(a, b, ops.VALUE)
 
+    def slope_divided(self, a: Expression, b: Expression) -> Expression:
+        """One by another that is not negative, for a derivative; a lane where that may be zero has none."""
+        return self._divided(a, b, ops.DERIVATIVE)
+
     def _divided(self, a: Expression, b: Expression, row: int) -> Expression:
         return self.write(ops.SLOPE, a, b, constant=float(row))
 

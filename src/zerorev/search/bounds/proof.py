@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
@@ -40,7 +39,9 @@ TURNS_OF_LEG = 257  # points at which a motion that failed is examined
 MOST_FRESH_CUTS = 8
 SLIDING_LOOKS = 33  # points of a leg
 ENOUGH_LACK = 1e-6  # [rad/m]
-DEEPER, FINER, DEEPEST = 1e-2, 1e-3, 1.0  # shares of the deepest stroke by which a deeper one is refuted
+# shares of the deepest stroke by which a deeper one is refuted; next to a singularity a coarse bound is all there is
+DEEPER = (1e-3, 1e-2, 1e-1, 1.0)
+SHARES = (0.4, 0.6, 0.5, 0.5)  # of the boxes that are left, for each of them
 MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
 SHALLOWEST = 1e-4  # of the arm's reach: a stroke that is none
 
@@ -122,39 +123,68 @@ def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree]
         boxes: budget, in boxes of legs that are examined.
         log: out, the tree of each search that was made, or None.
     """
-    spent, at_most = 0, None
     shallowest = SHALLOWEST * problem.robot.reach
-    # a coarse bound is cheap; where none is, next to a singularity, a coarser one is better than none
-    steps = [DEEPER, FINER] if depth > 0 else [0.0]
-    while steps and spent < boxes:
-        step = steps.pop(0)
-        share = boxes - spent if not steps else (boxes - spent) // 2
-        outcome = _any_motion(problem, max(depth * (1 + step), shallowest), share, log)
-        spent += outcome.boxes
-        if outcome.motion is not None:
-            return DepthBound(None, outcome.motion, spent)
-        if outcome.refuted:
-            at_most = max(depth * (1 + step), shallowest)
-        elif step >= DEEPER and step < DEEPEST:
-            steps = [10 * step]
-    return DepthBound(at_most, None, spent)
+    depths = [max(depth * (1 + step), shallowest) for step in (DEEPER if depth > 0 else (0.0,))]
+    searches = [_AnyMotion(problem, one, logged=log is not None) for one in depths]
+
+    def spent() -> int:
+        return sum(one.boxes for one in searches)
+
+    for search, share in zip(searches, SHARES, strict=False):
+        search.go_on(int(share * (boxes - spent())))
+        if search.decided:
+            break
+    if not search.motion:  # with a coarser bound there, the finest one has all that is left
+        search = searches[0]
+        search.go_on(boxes - spent())
+    if log is not None:
+        log += [tree for one in searches for tree in one.trees]
+    if search.motion is not None:
+        return DepthBound(None, search.motion, spent())
+    at_most = min((deeper for deeper, one in zip(depths, searches, strict=True) if one.refuted), default=None)
+    return DepthBound(at_most, None, spent())
 
 
-class _Outcome(NamedTuple):
-    """What a search for any motion without a reversal came to."""
+class _AnyMotion:
+    """Whether any two straight legs of a depth have no reversal and keep the threshold at every point.
 
-    motion: Candidate | None
-    refuted: bool
-    boxes: int
+    Attributes:
+        motion: one that does, or None so far.
+        refuted: whether there is none.
+    """
 
+    def __init__(self, problem: Problem, depth: float, *, logged: bool) -> None:
+        settings = replace(problem.settings, min_rate_rule="pointwise", weights=())
+        there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
+        self._prover = _Prover(there, 0, log=[] if logged else None)
+        self._search: Search | None = None
+        self.motion: Candidate | None = None
+        self.refuted = False
 
-def _any_motion(problem: Problem, depth: float, boxes: int, log: list[ProofTree] | None) -> _Outcome:
-    """Whether any two straight legs of a depth have no reversal and keep the threshold at every point."""
-    settings = replace(problem.settings, min_rate_rule="pointwise", weights=())
-    there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
-    prover = _Prover(there, boxes, log=log)
-    least = prover.least(None, most=0.0, first=True)
-    return _Outcome(least.best, least.ended and least.best is None, prover.spent)
+    @property
+    def boxes(self) -> int:
+        """How many boxes of legs were examined."""
+        return self._prover.spent
+
+    @property
+    def decided(self) -> bool:
+        """Whether the answer is known."""
+        return self.refuted or self.motion is not None
+
+    @property
+    def trees(self) -> list[ProofTree]:
+        """The tree of the search, where it was made and is logged."""
+        return (self._prover.log or [])[-1:]
+
+    def go_on(self, boxes: int) -> None:
+        """Examine some more boxes."""
+        if self.decided or boxes <= 0:
+            return
+        prover = self._prover
+        prover.budget = prover.spent + boxes
+        self._search = self._search or prover.search_for_least(None, most=0.0)
+        least = prover.least(None, most=0.0, first=True, search=self._search)
+        self.motion, self.refuted = least.best, least.ended and least.best is None
 
 
 class _Prover:
@@ -197,15 +227,22 @@ class _Prover:
         gap = 1.0 - bound / travel if travel > 0.0 else 0.0
         return Proof(best, Optimality(fewest, bound, gap, decided and gap <= STATED_GAP), self.spent)
 
-    def least(self, best: Candidate | None, most: float, *, first: bool = False) -> _Least:
+    def search_for_least(self, best: Candidate | None, most: float) -> Search:
+        """The search that `least` runs."""
+        return self._search(self.threshold * (1 - SAME_RATE), most, best)
+
+    def least(
+        self, best: Candidate | None, most: float, *, first: bool = False, search: Search | None = None
+    ) -> _Least:
         """The motion of the least travel that keeps the threshold, and costs no more than `most` in reversals.
 
         Args:
             best: to begin with, or None.
             most: what reversals may cost.
             first: whether the first such motion will do.
+            search: one that is gone on with, or None.
         """
-        search = self._search(self.threshold * (1 - SAME_RATE), most, best)
+        search = search or self.search_for_least(best, most)
 
         def accepts(found: Candidate) -> bool:
             return found.keeps_threshold and self._cost(found) <= most + SAME_COST

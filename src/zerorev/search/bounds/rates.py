@@ -208,6 +208,11 @@ class PostureFormulas:
             ox, oy = ox * B, oy * A
             H = m0 * ox + m1 * oy
             fields.append([n1, Q2, Q23 - Q2, (oz * B) * s5_squared - c5 * H, m0 * oy - m1 * ox, H])
+        # derivatives by way of the rates repeat fewer quantities than those of the formulas above, so they are tighter
+        q1, q2, q23 = (self.sheet.slope_divided(top, den) for top, den in ((n1, A), (Q2, B), (Q23, B)))
+        self.sheet.slopes[A.number] = ahead * dx
+        for cosine, sine, turning in ((c1, s1, q1), (c2, s2, q2), (c23, s23, q23)):
+            self.sheet.slopes[cosine.number], self.sheet.slopes[sine.number] = -(sine * turning), cosine * turning
         den = [A, B, B, AB * s5_squared, AB * s5, AB * s5_squared]
         places: list[tuple[Expression, Expression]] = []
         if joints:
