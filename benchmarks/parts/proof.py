@@ -10,11 +10,9 @@ import numpy as np
 
 import zerorev as zr
 from benchmarks.parts import Options
+from benchmarks.problems import random_problem
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev import kinematics
-from zerorev.model._arrays import rotation_rpy, transform
-from zerorev.model.files import robot_names
 from zerorev.search.bounds.proof import DepthBound, Proof, bound_depth, prove
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
@@ -25,8 +23,6 @@ __all__ = ["run"]
 JOB = Path(__file__).parents[2] / "examples" / "jobs" / "thesis_positions.yaml"
 FIRST_SEED = 8_000
 BOXES = 500_000  # some seconds
-NEAR = (0.9, 0.995)  # shares of its deepest stroke that half of the random holes are drilled to
-NARROWED = 0.4  # share of its range that each joint of a quarter of them keeps
 MOST_GAP = 1e-3
 
 
@@ -44,7 +40,7 @@ def run(options: Options) -> Section:
         (name, *_proven(each.values[0]), duration(each.median), duration(max(each.seconds)))
         for name, each in positions.items()
     ]
-    problems = [_random(FIRST_SEED + n) for n in range(options.holes)]
+    problems = [random_problem(FIRST_SEED + n) for n in range(options.holes)]
     first = [search(p.robot, p.tool, p.hole, p.settings) for p in problems]
     random = in_turns({p.hole.id: partial(_prove, p, best) for p, best in zip(problems, first, strict=True)}, 1)
     proofs: list[Proof] = [each.values[0] for each in random.values()]
@@ -117,27 +113,3 @@ def _is_better(problem: Problem, proven: Candidate | None, first: Candidate | No
         return proven is not first
     fewer = problem.order.reversals(proven) < problem.order.reversals(first)
     return fewer or proven.score.travel < first.score.travel * (1 - MOST_GAP)
-
-
-def _random(seed: int) -> Problem:
-    """A hole within the reach of any robot that ships, with the thesis' drill or a random tool."""
-    rng = np.random.default_rng(seed)
-    names = robot_names()
-    robot, tool = zr.read_robot(names[seed % len(names)]), zr.read_tool("thesis_drill")
-    size, settings = robot.size, zr.Settings()
-    if rng.integers(2):
-        place = size * rng.uniform([-0.2, -0.2, 0.05], [0.2, 0.2, 0.25])
-        tool = zr.Tool("random", transform(rotation_rpy(*rng.uniform(-np.pi, np.pi, 3)), place))
-    joints = rng.uniform(robot.limits.lower, robot.limits.upper)
-    T = kinematics.forward(robot, joints) @ tool.T_flange_tcp
-    depth = size * float(rng.uniform(0.005, 0.06))
-    hole = zr.Hole(f"random {seed}", T[:3, 3], -T[:3, 2], depth, psi_zero=T[:3, 1])
-    if seed % 4 == 0:
-        wide = robot.limits.upper - robot.limits.lower
-        lower = np.clip(joints - NARROWED * wide * rng.uniform(0.2, 0.8, 6), robot.limits.lower, None)
-        lower = np.minimum(lower, robot.limits.upper - NARROWED * wide)
-        robot = replace(robot, limits=replace(robot.limits, lower=lower, upper=lower + NARROWED * wide))
-    if seed // 2 % 2:
-        deepest = zr.deepest_stroke(robot, tool, hole, settings).depth
-        hole = replace(hole, depth=deepest * float(rng.uniform(*NEAR)) if deepest > 0 else depth)
-    return Problem(robot, tool, hole, settings)
