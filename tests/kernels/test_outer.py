@@ -10,7 +10,7 @@ from zerorev.kernels import outer_cells, outer_sets
 from zerorev.kernels.intervals import LANES
 from zerorev.motion import joints_along
 from zerorev.search.bounds.cells import cell_formulas
-from zerorev.search.bounds.free_depth import Grid, Rules
+from zerorev.search.bounds.free_legs import Grid, Rules
 from zerorev.search.bounds.tree import model_limits
 
 CAP = np.deg2rad(5e3)
@@ -25,11 +25,12 @@ def random_cells(rng, drilled, posture):
     lower, upper = model_limits(robot)
     rules = Rules(float(rng.choice([0.0, np.deg2rad(10.0)])), CAP, lower, upper)
     plane = kinematics.twist_plane(robot, tool, hole)
-    formulas = cell_formulas(robot.arm, plane, posture, tuple(upper - lower < 2 * np.pi))
+    formulas = cell_formulas(robot.arm, plane, posture, (True,) * 6)
     slab, column = rng.integers(0, slabs, LANES), rng.integers(0, columns, LANES)
     flips, raw = np.full(LANES, 3), np.empty((LANES, 6, outer_cells.RAW))
-    outer_cells.tabulate(robot.arm, plane, posture, formulas, rules, grid, slab, column, flips, raw)
-    return grid, rules, slab, column, flips, raw
+    bent, swing = np.empty(LANES), np.empty((LANES, 6, 2))
+    outer_cells.tabulate(robot.arm, plane, posture, formulas, rules, grid, slab, column, flips, raw, bent, swing)
+    return grid, rules, slab, column, flips, raw, bent, swing
 
 
 def check_cells(rng, drilled):
@@ -37,7 +38,7 @@ def check_cells(rng, drilled):
     robot, tool, hole, _ = drilled.all
     posture = int(rng.integers(4))
     branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)  # of sin q5 > 0
-    grid, rules, slab, column, flips, raw = random_cells(rng, drilled, posture)
+    grid, rules, slab, column, flips, raw, bent, swing = random_cells(rng, drilled, posture)
     sign, count = np.array(robot.arm.sign), 0
     low, high = np.empty(1), np.empty(1)
     for n in range(LANES):
@@ -54,6 +55,13 @@ def check_cells(rng, drilled):
                 count += 1
                 angles = joints_along(robot, tool, hole, branch, np.array([s]), np.array([psi]))[0]
                 model = angles * sign - np.array(robot.arm.offset)
+                arm = robot.arm
+                elbow = abs(arm.c2 * (arm.a2 * np.cos(model[2]) + arm.c3 * np.sin(model[2])))
+                assert elbow <= bent[n] * (1 + 1e-9)
+                middle, half = swing[n].mean(axis=1), 0.5 * (swing[n, :, 1] - swing[n, :, 0])
+                known = np.isfinite(half)
+                away = (model - middle)[known]
+                assert (np.abs(away - 2 * np.pi * np.rint(away / (2 * np.pi))) <= half[known]).all()
                 for flip in range(2):
                     there = model * np.array([1, 1, 1, 1, 1 - 2 * flip, 1]) + np.pi * flip * np.array(
                         [0, 0, 0, 1, 0, 1]
@@ -62,14 +70,21 @@ def check_cells(rng, drilled):
                     if (there + 2 * np.pi * turns <= rules.upper).all():
                         assert flips[n] >> flip & 1
                 left = np.full(1, 3)
-                outer_cells.slopes(rules, raw[n : n + 1], np.sign(rate), left, low, high)
+                outer_cells.slopes(rules, raw, np.array([n]), np.sign(rate), left, low, high)
                 assert left[0] == 3
                 assert low[0] <= slope <= high[0]
     return count
 
 
-def random_table(rng, grid, dead):
-    """Cells of a grid, some missing, each with slopes that may all be of one sign."""
+def random_table(rng, grid, dead, joints):
+    """Cells of a grid, some missing, each with slopes that may all be of one sign; half of them with joints' angles.
+
+    Args:
+        rng: of it.
+        grid: of the cells.
+        dead: share of the cells that are missing.
+        joints: how the angle of each of six joints changes with stand-off and spin, shape (6, 2).
+    """
     slabs = grid.edges.size - 1
     start, column = [0], []
     for _ in range(slabs):
@@ -79,12 +94,25 @@ def random_table(rng, grid, dead):
     count = len(column)
     middle = rng.normal(size=count) * 3.0
     half = rng.exponential(size=count) * 2.0
-    return np.array(start), np.array(column), middle - half, middle + half, rng.integers(1, 4, count)
+    start, column = np.array(start), np.array(column)
+    zone, slab = np.full(count, -1), np.repeat(np.arange(slabs), np.diff(start))
+    near = np.flatnonzero(rng.uniform(size=count) < 0.5)
+    zone[near] = np.arange(near.size)
+    s = np.stack([grid.edges[slab[near]], grid.edges[slab[near] + 1]])[:, None]
+    psi = (grid.left + np.stack([column[near], column[near] + 1]) * grid.width)[None]
+    angles = joints[:, 0, None, None, None] * s + joints[:, 1, None, None, None] * psi
+    swing = np.stack([angles.min(axis=(1, 2)), angles.max(axis=(1, 2))], axis=-1).swapaxes(0, 1)
+    swing += 2 * np.pi * rng.integers(-2, 3, (near.size, 6, 1))
+    behind = np.empty((near.size + 1, 6))
+    return start, column, middle - half, middle + half, rng.integers(1, 4, count), zone, swing, behind
 
 
-def random_path(rng, grid, table, flip):
-    """Columns and spins of a path at the faces from the target out, as far as it gets, and the cells that it passes."""
-    start, column, lo, hi, flips = table
+def random_path(rng, grid, table, flip, joints):
+    """Columns and spins of a path at the faces from the target out, as far as it gets, and the cells that it passes.
+
+    No joint turns back on it.
+    """
+    start, column, lo, hi, flips, *_ = table
     cells = [
         {int(column[n]): n for n in range(start[k], start[k + 1]) if flips[n] >> flip & 1}
         for k in range(grid.edges.size - 1)
@@ -106,7 +134,12 @@ def random_path(rng, grid, table, flip):
         for _ in range(200):
             n = cells[k][c]
             passed.append(n)
-            slope = lo[n] + share * (hi[n] - lo[n])
+            edge = -joints[:, 0] / joints[:, 1]
+            least = max(lo[n], edge[joints[:, 1] > 0].max(initial=-np.inf))
+            most = min(hi[n], edge[joints[:, 1] < 0].min(initial=np.inf))
+            if least > most:
+                return faces, passed
+            slope = least + share * (most - least)
             rest = min(grid.edges[k + 1] - s, (grid.edges[k + 1] - grid.edges[k]) * rng.choice([0.1, 1.0]))
             to_edge = (grid.width - x) / slope if slope > 0 else x / -slope if slope < 0 else np.inf
             if to_edge > rest:
@@ -152,7 +185,8 @@ class TestCells:
             flips, raw = np.full(LANES, 3), np.empty((LANES, 6, outer_cells.RAW))
             formulas = cell_formulas(robot.arm, plane, 0, (False,) * 6)
             outer_cells.tabulate(
-                robot.arm, plane, 0, formulas, rules, grid, np.zeros(LANES, int), column, flips, raw
+                robot.arm, plane, 0, formulas, rules, grid, np.zeros(LANES, int), column, flips, raw, np.empty(LANES),
+                np.empty((0, 6, 2)),
             )  # fmt: skip
             psi = grid.left + (column + 0.5) * grid.width
             fields = kinematics.joint_rates(robot, tool, hole, np.full(LANES, 1.05e-3), psi)
@@ -161,7 +195,7 @@ class TestCells:
                 critical = (-theta_s / theta_psi).max(axis=1)
             for n in np.flatnonzero(critical < CAP / 2):
                 low, high, left = np.empty(1), np.empty(1), np.full(1, 3)
-                outer_cells.slopes(rules, raw[n : n + 1], np.sign(theta_psi[n]), left, low, high)
+                outer_cells.slopes(rules, raw, np.array([n]), np.sign(theta_psi[n]), left, low, high)
                 known += 1
                 close += critical[n] - 0.02 * CAP <= low[0] <= critical[n]
         assert known > 20
@@ -176,10 +210,12 @@ class TestSets:
             columns, slabs = int(rng.integers(3, 12)), int(rng.integers(1, 6))
             edges = np.append(0.0, np.cumsum(rng.uniform(0.05, 0.6, slabs)))
             grid = Grid(-1.0, float(rng.uniform(0.1, 1.0)), columns, bool(trial % 2), edges)
-            table, flip = random_table(rng, grid, rng.choice([0.0, 0.2])), int(rng.integers(2))
+            # angles that do not depend on the spin where that comes round
+            joints = np.stack([rng.uniform(0, 2, 6), rng.normal(size=6) * (1e-9 if grid.periodic else 0.5)], axis=1)
+            table, flip = random_table(rng, grid, rng.choice([0.0, 0.2]), joints), int(rng.integers(2))
             size = table[1].size
             for _ in range(20):
-                faces, passed = random_path(rng, grid, table, flip)
+                faces, passed = random_path(rng, grid, table, flip, joints)
                 depth = len(faces) - 1
                 if depth < 1:
                     continue
@@ -203,11 +239,32 @@ class TestSets:
         """Slopes of at least 2 on columns of 3 x 0.5: no path is there after 0.75."""
         edges = np.linspace(0, 1, 11)
         grid = Grid(0.0, 0.5, 3, False, edges)
-        table = np.arange(11) * 3, np.tile(np.arange(3), 10), np.full(30, 2.0), np.full(30, 3.0), np.full(30, 1)
+        table = steady_table(grid, 2.0, 3.0)
         viable, passed = np.full((outer_sets.FACES, 30), np.nan), np.zeros(30, bool)
         assert outer_sets.inwards(table, grid, 0, 7, viable, passed)
         assert not outer_sets.inwards(table, grid, 0, 8, viable, passed)
         assert not outer_sets.inwards(table, grid, 1, 1, viable, passed)
+
+    def test_end_where_a_joint_would_turn_back(self):
+        """A joint whose angle falls with the stand-off, at spins that a path can keep, however the others turn."""
+        grid = Grid(0.0, 0.1, 3, False, np.linspace(0, 1, 11))
+        table = steady_table(grid, -0.05, 0.05)
+        swing, viable, passed = table[6], np.full((outer_sets.FACES, 30), np.nan), np.zeros(30, bool)
+        slab = np.repeat(np.arange(10), 3)
+        swing[:, :, 0], swing[:, :, 1] = 0.1 * slab[:, None], 0.1 * slab[:, None] + 0.15
+        assert outer_sets.inwards(table, grid, 0, 10, viable, passed)
+        swing[:, 3] = -swing[:, 3, ::-1]
+        assert outer_sets.inwards(table, grid, 0, 2, viable, passed)
+        assert not outer_sets.inwards(table, grid, 0, 3, viable, passed)
+
+
+def steady_table(grid, lo, hi):
+    """Every cell of a grid, with the same slopes, and of no angle is anything known."""
+    columns, slabs = grid.columns, grid.edges.size - 1
+    count = columns * slabs
+    start, column, ones = np.arange(slabs + 1) * columns, np.tile(np.arange(columns), slabs), np.ones(count)
+    swing = np.full((count, 6, 2), [-np.inf, np.inf])
+    return start, column, lo * ones, hi * ones, np.full(count, 1), np.arange(count), swing, np.empty((count + 1, 6))
 
 
 def on_face(grid, table, slab, rows, faces, c, x):

@@ -15,7 +15,7 @@ from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.free_deepest import deepest_free
 from zerorev.search.problem import Problem
 
-BUDGET = 100_000
+BUDGET = 50_000
 LESS = 0.7  # of a stroke that exists: a bound that is driven up from there does not know of it
 CLOSE = {  # target [m]: by how much more than the stroke that is found the bound is, at most
     (0.5, 0.3, 0.8): 0.06,
@@ -103,9 +103,9 @@ class TestBound:
 
     @pytest.mark.long
     def test_is_never_below_a_stroke_that_is_found_on_many_holes(self):
-        for seed in range(910, 940):
+        for seed in range(910, 926):
             check_against_the_found(seed)
 
     @pytest.mark.long
     def test_is_never_below_random_legs_on_many_holes(self):
-        assert sum(check_against_walks(seed, 60, 12) for seed in range(950, 962)) >= 6
+        assert sum(check_against_walks(seed, 60, 12) for seed in range(950, 955)) >= 3

@@ -5,8 +5,8 @@ slopes at which it can go that way anywhere in the cell are a half-line, or two 
 open, or all; what the six joints have in common is enclosed by one interval. Everything is rounded outwards.
 
 All joints are in model angles, with sin(q5) >= 0. Lengths in m, angles in rad. No kernel raises. `formulas` is a
-`zerorev.search.bounds.cells.CellFormulas`, `rules` a `zerorev.search.bounds.free_depth.Rules`, `grid` a
-`zerorev.search.bounds.free_depth.Grid` throughout.
+`zerorev.search.bounds.cells.CellFormulas`, `rules` a `zerorev.search.bounds.free_legs.Rules`, `grid` a
+`zerorev.search.bounds.free_legs.Grid` throughout.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _COS, _SIN, _COS_C, _SIN_C, _STANDOFF, _STANDOFF_C, _ONE, _HALF_PSI, _HALF_STAND
 
 
 @kernel
-def tabulate(arm, plane, posture, formulas, rules, grid, slab, column, flips, raw):  # type: ignore[no-untyped-def]
+def tabulate(arm, plane, posture, formulas, rules, grid, slab, column, flips, raw, bent, swing):  # type: ignore[no-untyped-def]
     """What is known of the joints in some cells.
 
     Args:
@@ -43,6 +43,9 @@ def tabulate(arm, plane, posture, formulas, rules, grid, slab, column, flips, ra
         column: of each cell, shape (N,).
         flips: in and out, wrist flips on which a leg may pass a cell, as bits, shape (N,); 0: none.
         raw: out, shape (N, 6, RAW).
+        bent: out, how far the elbow is from its singularity, at most, shape (N,) [m^2]: |Delta| of theory §3.
+        swing: out, least and greatest angle of each joint, up to whole turns, shape (N, 6, 2) [rad]; or (0, 6, 2): not
+            wanted. With joints whose angles the formulas leave out, and where nothing is known, it is not finite.
     """
     work, low, high = np.empty(ROOM), np.empty(LANES), np.empty(LANES)
     rows, unknown, inputs = formulas.rows, formulas.unknown, formulas.inputs
@@ -83,8 +86,14 @@ def tabulate(arm, plane, posture, formulas, rules, grid, slab, column, flips, ra
                 continue
             known = unknown[VALUE, lane] == 0.0
             _gather(formulas, rules, known, lane, raw[n])
-            if known:
-                flips[n] = _within_limits(formulas, rules, grid, slab[n], lane, flips[n])
+            bent[n] = rows[formulas.denominator[1], LANES + lane]
+            for i in range(6):
+                at, radius = 0.0, np.inf
+                if known and formulas.whole[i] >= 0:
+                    at, radius = _angle(formulas, grid, slab[n], lane, i)
+                    flips[n] = _within_limits(rules, i, at, radius, flips[n])
+                if swing.shape[0] > 0:
+                    swing[n, i, 0], swing[n, i, 1] = at - radius, at + radius
 
 
 @kernel
@@ -109,59 +118,63 @@ def _gather(formulas, rules, known, lane, raw):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _within_limits(formulas, rules, grid, slab, lane, flips):  # type: ignore[no-untyped-def]
-    """On which of some wrist flips the angles of a cell may lie within the limits, whatever the turns."""
+def _angle(formulas, grid, slab, lane, i):  # type: ignore[no-untyped-def]
+    """Angle of a joint in a cell, up to whole turns: its middle, and how far it may be from there [rad]."""
     rows = formulas.rows
     half_psi = 0.5 * grid.width + 2.0 * EDGE
     half_s = 0.5 * (grid.edges[slab + 1] - grid.edges[slab]) * (1.0 + 1e-12) + 1e-15
-    for i in range(6):
-        if formulas.whole[i] < 0:
-            continue
-        at_low, at_high = rows[formulas.whole[i], lane], rows[formulas.whole[i], LANES + lane]
-        mid_low, mid_high = rows[formulas.middle[i], lane], rows[formulas.middle[i], LANES + lane]
-        turning, outward = formulas.turning[i], formulas.outward[i]
-        by_psi = max(abs(rows[turning, lane]), abs(rows[turning, LANES + lane]))
-        by_s = max(abs(rows[outward, lane]), abs(rows[outward, LANES + lane]))
-        at, radius = 0.5 * (at_low + at_high), 0.5 * (at_high - at_low)
-        if max(by_psi, by_s) < UNKNOWN and mid_high < UNKNOWN:
-            varies = by_psi * half_psi + by_s * half_s + 0.5 * (mid_high - mid_low)
-            if varies < radius:
-                at, radius = 0.5 * (mid_low + mid_high), varies
-        radius += PAD
-        if not radius < np.pi:
-            continue
-        for flip in range(2):
-            angle = flipped(i, flip, at)
-            k = np.ceil((rules.lower[i] - PAD - angle - radius) / _TURN)
-            if angle - radius + _TURN * k > rules.upper[i] + PAD:
-                flips &= ~(1 << flip)
+    at_low, at_high = rows[formulas.whole[i], lane], rows[formulas.whole[i], LANES + lane]
+    mid_low, mid_high = rows[formulas.middle[i], lane], rows[formulas.middle[i], LANES + lane]
+    turning, outward = formulas.turning[i], formulas.outward[i]
+    by_psi = max(abs(rows[turning, lane]), abs(rows[turning, LANES + lane]))
+    by_s = max(abs(rows[outward, lane]), abs(rows[outward, LANES + lane]))
+    at, radius = 0.5 * (at_low + at_high), 0.5 * (at_high - at_low)
+    if max(by_psi, by_s) < UNKNOWN and mid_high < UNKNOWN:
+        varies = by_psi * half_psi + by_s * half_s + 0.5 * (mid_high - mid_low)
+        if varies < radius:
+            at, radius = 0.5 * (mid_low + mid_high), varies
+    return at, (radius + PAD if radius < np.pi else np.inf)
+
+
+@kernel
+def _within_limits(rules, i, at, radius, flips):  # type: ignore[no-untyped-def]
+    """On which of some wrist flips an angle may lie within a joint's limits, whatever the turns."""
+    if not radius < np.pi:
+        return flips
+    for flip in range(2):
+        angle = flipped(i, flip, at)
+        k = np.ceil((rules.lower[i] - PAD - angle - radius) / _TURN)
+        if angle - radius + _TURN * k > rules.upper[i] + PAD:
+            flips &= ~(1 << flip)
     return flips
 
 
 @kernel
-def slopes(rules, raw, sense, flips, lo, hi):  # type: ignore[no-untyped-def]
+def slopes(rules, raw, which, sense, flips, lo, hi):  # type: ignore[no-untyped-def]
     """Between which slopes legs stay whose joints go given ways.
 
     Args:
         rules: whose cap counts.
-        raw: what `tabulate` has found, shape (N, 6, RAW).
+        raw: what `tabulate` has found, shape (M, 6, RAW).
+        which: of these, shape (N,).
         sense: signs of the outward rates, shape (6,).
         flips: in and out, shape (N,); 0 where there is no slope.
         lo: out, shape (N,) [rad/m].
         hi: out, shape (N,) [rad/m].
     """
     pieces, cut = np.empty((MOST_PIECES, 2)), np.empty((MOST_PIECES, 2))
-    for n in range(raw.shape[0]):
+    for n in range(which.shape[0]):
         lo[n], hi[n] = 1.0, -1.0
         if flips[n] == 0:
             continue
         pieces[0, 0], pieces[0, 1] = -rules.steepest, rules.steepest
         count = 1
         for i in range(6):
-            spare = raw[n, i, FORTH] if sense[i] > 0.0 else raw[n, i, BACK]
-            least = raw[n, i, LEAST] if sense[i] > 0.0 else -raw[n, i, MOST]
-            most = raw[n, i, MOST] if sense[i] > 0.0 else -raw[n, i, LEAST]
-            count = _cut(pieces, count, raw[n, i, AT], spare, least, most, cut)
+            at, forth, back, least, most = raw[which[n], i]
+            if sense[i] > 0.0:
+                count = _cut(pieces, count, at, forth, least, most, cut)
+            else:
+                count = _cut(pieces, count, at, back, -most, -least, cut)
             pieces, cut = cut, pieces
         if count == 0:
             flips[n] = 0

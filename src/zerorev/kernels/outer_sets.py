@@ -10,6 +10,13 @@ A table is `start` (K + 1,), where each slab's cells start; `column` (N,), risin
 (N,) [rad/m]; and `flips` (N,), wrist flips as bits. A *face* between two slabs holds one interval of spins per cell,
 from the left edge of its column [rad], as arrays `a` and `b` aligned with the cells of one of the slabs; a > b where it
 is empty.
+
+Next to the elbow's singularity, at the edge of reach, the conditions on slopes leave a path along the edge that no arm
+can follow. There, in the *zone*, the angles are enclosed as well: no joint turns back, so none may come below the least
+angle that it had on the way. `zone` (N,) numbers the cells of the zone, -1 elsewhere; `swing` (Z, 6, 2) has the least
+and the greatest angle of each joint, counted the way it turns as the leg is run outwards, up to whole turns; `behind`
+(Z + 1, 6) is room for the angle that no path into a cell is behind.
+
 Lengths in m, angles in rad. No kernel raises.
 """
 
@@ -18,11 +25,53 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
+from zerorev.kernels.bound_boxes import PAD
 from zerorev.kernels.outer_cells import EDGE
 
 IN_A, IN_B, OUT_A, OUT_B, LEFT_FIRST, LEFT_LAST, RIGHT_FIRST, RIGHT_LAST, FACES = range(9)
 MOST_ROUNDS = 4  # round the circle, before a path is taken to come at any time
+NARROW = 0.5 * np.pi  # [rad] of an angle in a cell that says something
+TURN = 2.0 * np.pi
 SAFE = 1e-12  # relative, kept for the rounding of times and of ways
+
+
+@kernel
+def _enter(table, inwards, source, target):  # type: ignore[no-untyped-def]
+    """Note that a path comes from one cell into another, unless a joint would have to turn back for it.
+
+    Args:
+        table: see the module.
+        inwards: whether paths are followed inwards, and joints backwards.
+        source: number of the cell that it comes from; below 0: from where nothing is known.
+        target: number of the cell that it comes into.
+
+    Returns:
+        0 where it cannot, 2 where it is further behind than all others before, else 1.
+    """
+    zone, swing, behind = table[5], table[6], table[7]
+    z = zone[target]
+    if z < 0:
+        return 1
+    y = zone[source] if source >= 0 else -1
+    lowest = behind[behind.shape[0] - 1]
+    for i in range(6):
+        lowest[i] = -np.inf
+        low, high = (-swing[z, i, 1], -swing[z, i, 0]) if inwards else (swing[z, i, 0], swing[z, i, 1])
+        if y < 0 or not high - low < NARROW:
+            continue
+        least, most = (-swing[y, i, 1], -swing[y, i, 0]) if inwards else (swing[y, i, 0], swing[y, i, 1])
+        if not most - least < NARROW:
+            continue
+        # where the two cells touch their angles agree, up to whole turns
+        turns = np.rint(0.5 * (low + high - least - most) / TURN)
+        lowest[i] = max(behind[y, i], least) + TURN * turns
+        if lowest[i] > high + PAD:
+            return 0
+    lower = False
+    for i in range(6):
+        if lowest[i] < behind[z, i]:
+            behind[z, i], lower = lowest[i], True
+    return 2 if lower else 1
 
 
 @kernel
@@ -30,7 +79,7 @@ def cross(table, grid, flip, inwards, slab, faces, passed):  # type: ignore[no-u
     """Carry sets of spins through a slab.
 
     Args:
-        table: start, column, lo, hi, flips.
+        table: see the module.
         grid: `Grid`.
         flip: 0 or 1: the wrist flip whose cells count.
         inwards: whether from the outer face to the inner one.
@@ -109,7 +158,8 @@ def _sideways(table, grid, flip, inwards, rightwards, first, last, h, faces):  #
             early, late = early * (1.0 - SAFE), min(late * (1.0 + SAFE), h)
             if early > h:
                 continue
-            if early < faces[earliest, m] or late > faces[latest, m]:
+            entered = _enter(table, inwards, n if rounds <= MOST_ROUNDS else -1, m)
+            if entered > 0 and (early < faces[earliest, m] or late > faces[latest, m] or entered == 2):
                 faces[earliest, m] = min(early, faces[earliest, m])
                 faces[latest, m] = h if rounds > MOST_ROUNDS else max(late, faces[latest, m])
                 changed = grid.periodic
@@ -122,8 +172,8 @@ def _follows(left, right, grid):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def hand_over(source, first, last, a, b, target, begin, end, grid, out_a, out_b):  # type: ignore[no-untyped-def]
-    """Sets at a face, aligned with the cells of one slab, for the cells of another: also a spin on an edge of theirs.
+def meet(source, first, last, a, b, target, begin, end, grid, out_a, out_b):  # type: ignore[no-untyped-def]
+    """Sets at the target, aligned with the cells of one leg, for those of another: also a spin on an edge of theirs.
 
     Args:
         source: columns of cells, shape (N,).
@@ -137,34 +187,74 @@ def hand_over(source, first, last, a, b, target, begin, end, grid, out_a, out_b)
         grid: `Grid`.
         out_a: out, shape (M,) [rad].
         out_b: out, shape (M,) [rad].
-
-    Returns:
-        whether there is any.
     """
     for m in range(begin, end):
         out_a[m], out_b[m] = np.inf, -np.inf
-    m, some, w = begin, False, grid.width
+    m, w = begin, grid.width
     for n in range(first, last):
-        if a[n] > b[n]:
-            continue
-        c = source[n]
-        while m < end and target[m] < c:
+        while m < end and target[m] < source[n]:
             m += 1
-        if m < end and target[m] == c:
-            out_a[m], out_b[m] = min(out_a[m], a[n]), max(out_b[m], b[n])
+        if a[n] <= b[n]:
+            left, here, right = _beside(source[n], target, m, begin, end, grid)
+            if here >= 0:
+                out_a[here], out_b[here] = min(out_a[here], a[n]), max(out_b[here], b[n])
+            if left >= 0 and a[n] <= 0.0:
+                out_a[left], out_b[left] = min(out_a[left], w), w
+            if right >= 0 and b[n] >= w:
+                out_a[right], out_b[right] = 0.0, max(out_b[right], 0.0)
+
+
+@kernel
+def _beside(c, target, m, begin, end, grid):  # type: ignore[no-untyped-def]
+    """Cells of a slab left of a column, in it, right of it, or -1; `m` is the first that is not left of it."""
+    here = m if m < end and target[m] == c else -1
+    if begin == end:
+        return -1, -1, -1
+    left = m - 1 if m > begin else end - 1
+    right = m + 1 if here >= 0 else m
+    right = right if right < end else begin
+    return (
+        left if _follows(target[left], c, grid) else -1,
+        here,
+        right if _follows(c, target[right], grid) else -1,
+    )
+
+
+@kernel
+def _hand_over(table, grid, inwards, slab, into, faces):  # type: ignore[no-untyped-def]
+    """What leaves one slab enters the next, also on an edge of its cells; whether anything does."""
+    start, column = table[0], table[1]
+    begin, end, w = start[into], start[into + 1], grid.width
+    for m in range(begin, end):
+        faces[IN_A, m], faces[IN_B, m] = np.inf, -np.inf
+    m, some = begin, False
+    for n in range(start[slab], start[slab + 1]):
+        while m < end and column[m] < column[n]:
+            m += 1
+        a, b = faces[OUT_A, n], faces[OUT_B, n]
+        if a > b:
+            continue
+        left, here, right = _beside(column[n], column, m, begin, end, grid)
+        if here >= 0 and _enter(table, inwards, n, here) > 0:
+            faces[IN_A, here], faces[IN_B, here] = min(faces[IN_A, here], a), max(faces[IN_B, here], b)
             some = True
-        if a[n] <= 0.0:
-            k = m - 1 if m > begin else end - 1
-            if end > begin and _follows(target[k], c, grid):
-                out_a[k], out_b[k] = min(out_a[k], w), w
-                some = True
-        if b[n] >= w:
-            k = m + 1 if m < end and target[m] == c else m
-            k = k if k < end else begin
-            if end > begin and _follows(c, target[k], grid):
-                out_a[k], out_b[k] = 0.0, max(out_b[k], 0.0)
-                some = True
+        if left >= 0 and a <= 0.0 and _enter(table, inwards, n, left) > 0:
+            faces[IN_A, left], faces[IN_B, left] = min(faces[IN_A, left], w), w
+            some = True
+        if right >= 0 and b >= w and _enter(table, inwards, n, right) > 0:
+            faces[IN_A, right], faces[IN_B, right] = 0.0, max(faces[IN_B, right], 0.0)
+            some = True
     return some
+
+
+@kernel
+def _begin(table, first, last):  # type: ignore[no-untyped-def]
+    """Before paths set out from some cells: of none is it known what it is behind."""
+    zone, behind = table[5], table[7]
+    behind[:] = np.inf
+    for n in range(first, last):
+        if zone[n] >= 0:
+            behind[zone[n]] = -np.inf
 
 
 @kernel
@@ -172,7 +262,7 @@ def inwards(table, grid, flip, slabs, faces, passed):  # type: ignore[no-untyped
     """Viable sets: carry all spins at a depth in to the target.
 
     Args:
-        table: start, column, lo, hi, flips.
+        table: see the module.
         grid: `Grid`.
         flip: which wrist flip.
         slabs: how many slabs lie within the depth.
@@ -182,16 +272,12 @@ def inwards(table, grid, flip, slabs, faces, passed):  # type: ignore[no-untyped
     Returns:
         whether a leg may get to the depth.
     """
-    start, column = table[0], table[1]
+    start = table[0]
+    _begin(table, start[slabs - 1], start[slabs])
+    for n in range(start[slabs - 1], start[slabs]):
+        faces[IN_A, n], faces[IN_B, n] = 0.0, grid.width
     for k in range(slabs - 1, -1, -1):
-        first, last = start[k], start[k + 1]
-        if k == slabs - 1:
-            for n in range(first, last):
-                faces[IN_A, n], faces[IN_B, n] = 0.0, grid.width
-        elif not hand_over(
-            column, start[k + 1], start[k + 2], faces[OUT_A], faces[OUT_B], column, first, last, grid, faces[IN_A],
-            faces[IN_B],
-        ):  # fmt: skip
+        if k < slabs - 1 and not _hand_over(table, grid, True, k + 1, k, faces):
             return False
         if not cross(table, grid, flip, True, k, faces, passed):
             return False
@@ -203,7 +289,7 @@ def outwards(table, grid, flip, slabs, most_slabs, viable, faces, passed):  # ty
     """Reachable sets: carry spins at the target out, to a depth within its viable sets, then freely.
 
     Args:
-        table: start, column, lo, hi, flips.
+        table: see the module.
         grid: `Grid`.
         flip: which wrist flip.
         slabs: how many slabs lie within the depth.
@@ -215,14 +301,13 @@ def outwards(table, grid, flip, slabs, most_slabs, viable, faces, passed):  # ty
     Returns:
         how many slabs legs get through, at most.
     """
-    start, column = table[0], table[1]
-    reached = np.zeros(column.shape[0], dtype=np.bool_)
+    start = table[0]
+    reached = np.zeros(passed.shape[0], dtype=np.bool_)
     through = 0
+    _begin(table, start[0], start[1])
     for k in range(most_slabs):
         first, last = start[k], start[k + 1]
-        if k > 0 and not hand_over(
-            column, start[k - 1], first, faces[OUT_A], faces[OUT_B], column, first, last, grid, faces[IN_A], faces[IN_B]
-        ):
+        if k > 0 and not _hand_over(table, grid, False, k - 1, k, faces):
             break
         if k < slabs:
             for n in range(first, last):
@@ -262,24 +347,3 @@ def children(start, column, flips, finer_start, finer_column, finer_flips):  # t
                         finer_column[m], finer_flips[m] = 2 * column[n] + side, flips[n]
                         m += 1
     finer_start[2 * (start.shape[0] - 1)] = m
-
-
-@kernel
-def compacted(start, column, lo, hi, flips, slab):  # type: ignore[no-untyped-def]
-    """Drop the cells that are dead, in place; `slab` is each cell's.
-
-    Returns:
-        how many are left.
-    """
-    left, k = 0, 0
-    for n in range(column.shape[0]):
-        while k < slab[n]:
-            k += 1
-            start[k] = left
-        if flips[n] != 0:
-            column[left], lo[left], hi[left], flips[left] = column[n], lo[n], hi[n], flips[n]
-            left += 1
-    while k < start.shape[0] - 1:
-        k += 1
-        start[k] = left
-    return left
