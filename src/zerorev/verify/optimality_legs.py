@@ -21,6 +21,7 @@ __all__ = ["MID_SHARES", "Legs"]
 SHARES = tuple(0.5 - 0.5 * float(np.cos(np.pi * j / 7)) for j in range(8))  # of the depth; both ends exactly
 MID_SHARES = tuple(0.5 - 0.5 * float(np.cos(np.pi * (j + 0.5) / 8)) for j in range(8))
 FIRST = tuple(SHARES[j] for j in (0, 7, 3, 5, 1, 6, 2, 4))  # those that decide most first
+FIRST_TURN = 1.5 * np.pi  # [rad] of spin: where a leg goes round more than once, its first turn tells most
 CHUNK = 4  # stand-offs that are examined before the box is judged again
 NEVER = 100  # reversals that no joint makes
 
@@ -60,6 +61,8 @@ class Legs:
         self.least, self.by_psi, self.by_slope = arb(0), arb(0), arb(0)
         self.turns: tuple[Turns, Turns] = ((ANY_TURN,) * 6, (ANY_TURN,) * 6)
         self.twist = arb(max(box.least, -box.most, 0.0)) * of.depth
+        steepest = max(abs(box.least), abs(box.most)) * of.claim.depth
+        self._stretch = 1.0 if steepest <= FIRST_TURN else FIRST_TURN / steepest
 
     def look_closer(self) -> bool:
         """Examine the box further: the signs, then travel and limits, then more stand-offs; whether there was more."""
@@ -74,7 +77,7 @@ class Legs:
         low, high = extent.psi - extent.psi_half, extent.psi + extent.psi_half
         if bound > 0 and (low + arb(box.least) * depth > bound or high + arb(box.most) * depth < -bound):
             return "bound on the spin"
-        return self._examine(FIRST)
+        return self._examine(share * self._stretch for share in FIRST)
 
     def _examine(self, shares: Iterable[float]) -> str | None:
         """Examine the signs at stand-offs; why the box is dead, or None."""
