@@ -83,8 +83,9 @@ class TestBound:
         drilled = free(901).asking(proof_boxes=0)
         assert deepest_as_drilled(*drilled.all).at_most is None
 
-    def test_a_greater_budget_costs_more_and_stays_within_it(self):
-        drilled = free(907)
+    @pytest.mark.parametrize("seed", [907, 36])
+    def test_a_greater_budget_costs_more_and_stays_within_it(self, seed):
+        drilled = free(seed)
         found = deepest_free(*drilled.all)[0]
         small, large = (bound_free_depth(Problem(*drilled.all), found, boxes) for boxes in (30_000, 200_000))
         assert small.boxes <= 30_000

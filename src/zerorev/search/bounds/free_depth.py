@@ -60,7 +60,7 @@ def bound_free_depth(problem: Problem, depth: float, boxes: int) -> FreeBound:
     Args:
         problem: one hole; its depth is left aside.
         depth: the deepest stroke known [m]; 0: none.
-        boxes: budget; two cells count as a box of legs.
+        boxes: budget; two cells count as a box of legs. The first grid, some 20,000 boxes, is examined in any case.
     """
     return _Bounder(problem, max(depth * (1 + FINER), SHALLOWEST * problem.robot.reach), boxes).run()
 
@@ -171,6 +171,8 @@ class _Bounder:
             arm, plane, posture, anywhere, self.rules, grid, slab, column, flips, raw, bent, none
         )  # fmt: skip
         near = np.flatnonzero((flips != 0) & (bent < self.near))
+        if self.spent + count + near.size > self.left:
+            near = near[:0]  # without the angles the bound is as true, only less close
         zone, swing = np.full(count, -1), np.empty((near.size, 6, 2))
         zone[near] = np.arange(near.size)
         if near.size:
