@@ -20,6 +20,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.optimum import LEAST_STROKE, alternatives, deepest_as_drilled, optimum, too_short
+from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
 from zerorev.search.exact import can_run
 from zerorev.search.rank import Candidate, Order
@@ -216,7 +217,10 @@ def _with_optimality(
     proven = replace(answer, optimality=optimality)
     if answer.motion is None:
         findings = [
-            replace(finding, message=f"{finding.message} (proven for straight legs)")
+            replace(
+                finding,
+                message=f"{finding.message} (proven for straight legs with at most {MOST_REVERSALS:g} reversals)",
+            )
             if optimality.proven and finding.kind in ("limit", "unreachable")
             else finding
             for finding in answer.findings

@@ -28,7 +28,7 @@ from zerorev.search.rank import SAME_COST, Candidate
 from zerorev.search.segments import Legs, Rules, bettered
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
-__all__ = ["DepthBound", "Proof", "bound_depth", "prove"]
+__all__ = ["MOST_REVERSALS", "DepthBound", "Proof", "bound_depth", "prove"]
 
 GAP = 3e-4  # of the travel: so much more than the least is proven enough
 SAME_TRAVEL = 1e-6  # relative: by so little a motion is no better
