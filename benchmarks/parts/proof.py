@@ -13,7 +13,8 @@ from benchmarks.parts import Options
 from benchmarks.problems import random_problem
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev.search.bounds.proof import DepthBound, Proof, bound_depth, prove
+from zerorev.search.bounds.proof import Proof, prove
+from zerorev.search.bounds.straight_depth import DepthBound, bound_depth
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
 from zerorev.search.rank import Candidate

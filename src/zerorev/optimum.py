@@ -25,7 +25,8 @@ from zerorev.model.resized import resized
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.search.bounds.free_depth import bound_free_depth
-from zerorev.search.bounds.proof import bound_depth, prove
+from zerorev.search.bounds.proof import prove
+from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.cut_short import cut_short, descended, legs_swapped
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free

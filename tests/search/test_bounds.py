@@ -15,7 +15,8 @@ from zerorev.kernels import bound_boxes as kernels
 from zerorev.kernels import bound_legs, bound_tree
 from zerorev.kernels.intervals import LANES
 from zerorev.model.files import read_job
-from zerorev.search.bounds.proof import bound_depth, prove
+from zerorev.search.bounds.proof import prove
+from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.bounds.tree import Rules, Search, _room, model_limits
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem

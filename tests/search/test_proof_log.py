@@ -8,7 +8,8 @@ import pytest
 import zerorev as zr
 from oracles.proof_trees import THESIS
 from zerorev.kernels import bound_tree
-from zerorev.search.bounds.proof import bound_depth, prove
+from zerorev.search.bounds.proof import prove
+from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
 

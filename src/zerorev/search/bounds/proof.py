@@ -8,7 +8,7 @@ better motion that is found on the way takes the best one's place, so that the a
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -28,7 +28,7 @@ from zerorev.search.rank import SAME_COST, Candidate
 from zerorev.search.segments import Legs, Rules, bettered
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
-__all__ = ["MOST_REVERSALS", "DepthBound", "Proof", "bound_depth", "prove"]
+__all__ = ["MOST_REVERSALS", "Proof", "Prover", "prove"]
 
 GAP = 3e-4  # of the travel: so much more than the least is proven enough
 SAME_TRAVEL = 1e-6  # relative: by so little a motion is no better
@@ -39,11 +39,7 @@ TURNS_OF_LEG = 257  # points at which a motion that failed is examined
 MOST_FRESH_CUTS = 8
 SLIDING_LOOKS = 33  # points of a leg
 ENOUGH_LACK = 1e-6  # [rad/m]
-# shares of the deepest stroke by which a deeper one is refuted; next to a singularity a coarse bound is all there is
-DEEPER = (1e-3, 1e-2, 1e-1, 1.0)
-SHARES = (0.4, 0.6, 0.5, 0.5)  # of the boxes that are left, for each of them
 MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
-SHALLOWEST = 1e-4  # of the arm's reach: a stroke that is none
 
 
 @dataclass(frozen=True)
@@ -80,7 +76,7 @@ def prove(
     Returns:
         the best motion and what is proven of it. With criteria other than travel only the reversals are bounded.
     """
-    return _Prover(problem, boxes, allows, log).run(best)
+    return Prover(problem, boxes, allows, log).run(best)
 
 
 @dataclass(frozen=True)
@@ -98,97 +94,14 @@ class _Least:
     ended: bool
 
 
-@dataclass(frozen=True)
-class DepthBound:
-    """How deep a stroke without a reversal could be.
+class Prover:
+    """The proof of one hole; a search of it is gone on with where the budget is raised.
 
     Attributes:
-        at_most: no stroke of straight legs without a reversal that keeps the threshold is as deep [m]; None: not
-            decided.
-        deeper: a motion that is deeper than the one known, at its own depth; None: none was found.
-        boxes: how many boxes of legs were examined.
+        budget: in boxes of legs that are examined, in all.
+        spent: of it.
+        log: the tree of each search that was made, or None.
     """
-
-    at_most: float | None
-    deeper: Candidate | None
-    boxes: int
-
-
-def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree] | None = None) -> DepthBound:
-    """Refute strokes deeper than one, or find one (theory §4): what is impossible at a depth is so at any greater one.
-
-    Args:
-        problem: one hole; its depth is left aside.
-        depth: the deepest stroke known [m]; 0: none.
-        boxes: budget, in boxes of legs that are examined.
-        log: out, the tree of each search that was made, or None.
-    """
-    shallowest = SHALLOWEST * problem.robot.reach
-    depths = [max(depth * (1 + step), shallowest) for step in (DEEPER if depth > 0 else (0.0,))]
-    searches = [_AnyMotion(problem, one, logged=log is not None) for one in depths]
-
-    def spent() -> int:
-        return sum(one.boxes for one in searches)
-
-    for search, share in zip(searches, SHARES, strict=False):
-        search.go_on(int(share * (boxes - spent())))
-        if search.decided:
-            break
-    if not search.motion:  # with a coarser bound there, the finest one has all that is left
-        search = searches[0]
-        search.go_on(boxes - spent())
-    if log is not None:
-        log += [tree for one in searches for tree in one.trees]
-    if search.motion is not None:
-        return DepthBound(None, search.motion, spent())
-    at_most = min((deeper for deeper, one in zip(depths, searches, strict=True) if one.refuted), default=None)
-    return DepthBound(at_most, None, spent())
-
-
-class _AnyMotion:
-    """Whether any two straight legs of a depth have no reversal and keep the threshold at every point.
-
-    Attributes:
-        motion: one that does, or None so far.
-        refuted: whether there is none.
-    """
-
-    def __init__(self, problem: Problem, depth: float, *, logged: bool) -> None:
-        settings = replace(problem.settings, min_rate_rule="pointwise", weights=())
-        there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
-        self._prover = _Prover(there, 0, log=[] if logged else None)
-        self._search: Search | None = None
-        self.motion: Candidate | None = None
-        self.refuted = False
-
-    @property
-    def boxes(self) -> int:
-        """How many boxes of legs were examined."""
-        return self._prover.spent
-
-    @property
-    def decided(self) -> bool:
-        """Whether the answer is known."""
-        return self.refuted or self.motion is not None
-
-    @property
-    def trees(self) -> list[ProofTree]:
-        """The tree of the search, where it was made and is logged."""
-        return (self._prover.log or [])[-1:]
-
-    def go_on(self, boxes: int) -> None:
-        """Examine some more boxes."""
-        if self.decided or boxes <= 0:
-            return
-        prover = self._prover
-        prover.budget = prover.spent + boxes
-        self._search = self._search or prover.search_for_least(None, most=0.0)
-        least = prover.least(None, most=0.0, first=True, search=self._search)
-        self.motion, self.refuted = least.best, least.ended and least.best is None
-
-
-class _Prover:
-    """One hole's proof."""
 
     def __init__(
         self,
