@@ -67,6 +67,8 @@ MAY_CHANGE = {
     "settings.reversal_weights", "settings.min_rate_rule", "settings.min_rate_deg_per_mm", "settings.deepen_corner",
     "settings.feed_mm_s.plunge", "settings.objective", "settings.objective.travel", "settings.objective.limit_distance",
     "settings.joint_stiffness_nm_per_rad", "settings.legs",
+    # a budget that the proof ends within
+    "settings.proof_boxes",
     # of a hole that is out of reach
     "direction", "depth_mm", "psi_zero",
 }  # fmt: skip
