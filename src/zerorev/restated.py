@@ -19,7 +19,7 @@ from zerorev.evaluation import Evaluation
 from zerorev.model._units import deg_per_mm, mm
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Motion, Plan, Strokes, Verification
+from zerorev.model.plan import Finding, HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
 from zerorev.model.plan_data import answer_data
 from zerorev.model.plan_differences import differ, fields_differ, findings_differ, leaves
 from zerorev.model.robot import Robot
@@ -145,6 +145,7 @@ def check_hole(
         critical_rates=answer.critical_rates,
         measures=answer.measures,
         verified=stated.verified,
+        optimality=_with_gap(stated.optimality, again.optimality, answer.score),
     )
     searched = Counter(again.findings) - Counter(motion_findings(robot, settings, again) if again.motion else ())
     said = [*motion_findings(robot, settings, replace(found, verified=verified)), *searched.elements()]
@@ -163,6 +164,13 @@ def check_hole(
     # of what is stated, too, where that is the same
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
     return replace(verified, subject=known), tuple(differences)
+
+
+def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:
+    """What is proven, with the gap that the stated bound leaves: where a proof stops depends on the last digits."""
+    if stated is None or stated.travel_at_least is None or found is None or found.gap is None or not score:
+        return found
+    return replace(found, gap=1 - stated.travel_at_least / score.travel) if score.travel > 0 else found
 
 
 def _with_its_motion(stated: HolePlan) -> Hole:

@@ -56,8 +56,6 @@ from zerorev.model.validation import inside
 
 __all__ = ["answer_from", "plan_from"]
 
-GAP_TOLERANCE = 1e-6  # [%]
-
 
 def plan_from(form: PlanFile | DepthFile) -> Plan:
     """The plan of a plan file or of a depth file.
@@ -143,15 +141,13 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             measures=_measures_from(form.criteria) if form.criteria else None,
             deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
             deepest_at_most=None if form.deepest_at_most_mm is None else float(m(form.deepest_at_most_mm)),
-            optimality=_optimality_from(form.optimality, form.travel_deg) if form.optimality else None,
+            optimality=_optimality_from(form.optimality) if form.optimality else None,
             critical_rates=_critical_from(form),
         )
 
 
-def _optimality_from(form: OptimalityForm, travel_deg: float | None) -> Optimality:
+def _optimality_from(form: OptimalityForm) -> Optimality:
     travel, gap = form.travel_at_least_deg, form.gap_percent
-    if travel is not None and gap is not None and travel_deg:
-        _agree("optimality.gap_percent", gap, 100 * (1 - travel / travel_deg), GAP_TOLERANCE)
     return Optimality(
         form.reversals_at_least,
         None if travel is None else float(rad(travel)),

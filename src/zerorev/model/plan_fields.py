@@ -93,7 +93,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "optimality": Field("search", optional=True),
     "optimality.reversals_at_least": Field("search", DIGITS),
     "optimality.travel_at_least_deg": Field("search", BOUND, 1e-8),
-    "optimality.gap_percent": Field("search", absolute=100 * BOUND),
+    "optimality.gap_percent": Field("search", absolute=1e-6),
     "optimality.proven": Field("search"),
     "baseline": _EXACT,
     "baseline.reversals": _EXACT,
