@@ -59,10 +59,11 @@ class _Cache(FunctionCache):
 
 
 class _Turn:
-    """The turn to compile: one process at a time, so that all that share a cache run the same machine code.
+    """The turn to compile: one process at a time, so that what several processes need at once is compiled once.
 
     The same kernel compiled twice need not round alike: how what it calls is inlined depends on whether that was
-    compiled in the same process or loaded. Two processes at once would each keep its own, and the cache the later one.
+    compiled in the same process or loaded. One difference is left: the process that has compiled a kernel may go on
+    with another copy of what that calls than those that load it, and then the last digits differ between them.
     """
 
     def __init__(self) -> None:
