@@ -131,7 +131,7 @@ class _SayOnce(event.Listener):
     def on_start(self, event: event.Event) -> None:
         if not self.said:
             self.said = True
-            logging.getLogger("zerorev").warning("compiling kernels: takes about a minute, once; then they are cached")
+            logging.getLogger("zerorev").warning("compiling kernels: takes a minute or two, once; then they are cached")
 
     def on_end(self, event: event.Event) -> None:
         pass
