@@ -138,7 +138,7 @@ def _angle(formulas, grid, slab, lane, i):  # type: ignore[no-untyped-def]
 
 @kernel
 def _within_limits(rules, i, at, radius, flips):  # type: ignore[no-untyped-def]
-    """On which of some wrist flips an angle may lie within a joint's limits, whatever the turns."""
+    """On which of some wrist flips an angle may lie within a joint's limits, with any turns."""
     if not radius < np.pi:
         return flips
     for flip in range(2):

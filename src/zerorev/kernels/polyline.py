@@ -44,7 +44,7 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
         wants: 1 for the greatest, -1 for the least, shape (M,).
         low: least slopes in question, shape (M,).
         high: greatest slopes in question, shape (M,).
-        shares: where on a segment it is looked at, 0 to 1, both among them, shape (LOOKS,).
+        shares: where on a segment it is examined, 0 to 1, both among them, shape (LOOKS,).
         room: what `kernels.tube.workspace` returns.
         slopes: out, shape (M,); NaN where there is none.
     """

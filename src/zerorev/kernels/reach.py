@@ -25,7 +25,7 @@ MOST_PARTS = 64  # of a step
 CLOSER = 8  # looks by which the edge of a set is located, at most
 BACK = 1.0  # [rad] by which a joint may seem to have moved back, as spins at the target differ
 JUST = 0.2  # by which two slopes differ that are nearly the same, relative
-EDGE = 1e-3  # of the distance between two spins that are looked at: to which it is
+EDGE = 1e-3  # of the distance between two spins that are examined: to which it is
 LARGE = 1e9  # [rad/m] of a margin that says nothing
 
 
@@ -108,7 +108,7 @@ def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room)
         held: `Held`.
         limited: whether joint limits are heeded.
         s: stand-off [m].
-        between: two spins looked at, at most [rad].
+        between: two spins that are examined, at most [rad].
         spins: in and out, shape (KEPT, 2).
         count: how many intervals there are.
         room: what `workspaces` returns.
@@ -181,7 +181,7 @@ def _edge(arm, plane, branch, side, held, limited, s, known, close, spot):  # ty
 
 @kernel
 def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no-untyped-def]
-    """How far a point is from the joint limits, whatever the turns of the joints.
+    """How far a point is from the joint limits, with any turns of the joints.
 
     A joint that turns more than once round within its limits counts only where it is known how it stands at the target.
 

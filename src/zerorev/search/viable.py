@@ -1,4 +1,4 @@
-"""How deep free legs get, from whatever spin at the target, by reachable and viable sets (theory §4).
+"""How deep free legs get, from any spin at the target, by reachable and viable sets (theory §4).
 
 Along the target line the signs of theta_psi say which way each joint goes on the leg above the critical rates; on the
 leg below it goes the other way. A *family* is an interval of spins at the target with the same signs, in one posture.

@@ -48,7 +48,7 @@ def check_tree(
     Args:
         robot: the arm.
         tool: the drill.
-        hole: the drill axis, down to the target of the legs; its depth is not looked at, the tree's own counts.
+        hole: the drill axis, down to the target of the legs; its depth does not count, the tree's own does.
         tree: what is to be checked; its claim is for the reader to compare with what he wants proven.
         sample: check so many of the boxes, at random; None: all. That nothing is missing is checked of all.
         seed: of the sample.

@@ -319,5 +319,5 @@ class Prover:
 
 def _cost_scale(weights: Array) -> float:
     """What weighted counts of reversals are multiplied by, so that two that differ do so by 1 at least."""
-    sums = np.unique(np.round([np.dot(weights, n) for n in product(range(3), repeat=6)], 9))
+    sums = np.unique(np.round(np.array(list(product(range(3), repeat=6))) @ weights, 9))
     return float(min(1.0 / np.diff(sums).min(), 1e4)) if sums.size > 1 else 1.0

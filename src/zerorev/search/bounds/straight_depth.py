@@ -44,13 +44,14 @@ def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree]
         log: out, the tree of each search that was made, or None.
     """
     shallowest = SHALLOWEST * problem.robot.reach
-    depths = [max(depth * (1 + step), shallowest) for step in (DEEPER if depth > 0 else (0.0,))]
-    searches = [_AnyMotion(problem, one, logged=log is not None) for one in depths]
+    searches: list[_AnyMotion] = []
 
     def spent() -> int:
         return sum(one.boxes for one in searches)
 
-    for search, share in zip(searches, SHARES, strict=False):
+    for step, share in zip(DEEPER if depth > 0 else (0.0,), SHARES, strict=False):
+        search = _AnyMotion(problem, max(depth * (1 + step), shallowest), logged=log is not None)
+        searches.append(search)
         search.go_on(int(share * (boxes - spent())))
         if search.decided:
             break
@@ -61,7 +62,7 @@ def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree]
         log += [tree for one in searches for tree in one.trees]
     if search.motion is not None:
         return DepthBound(None, search.motion, spent())
-    at_most = min((deeper for deeper, one in zip(depths, searches, strict=True) if one.refuted), default=None)
+    at_most = min((one.depth for one in searches if one.refuted), default=None)
     return DepthBound(at_most, None, spent())
 
 
@@ -69,6 +70,7 @@ class _AnyMotion:
     """Whether any two straight legs of a depth have no reversal and keep the threshold at every point.
 
     Attributes:
+        depth: [m].
         motion: one that does, or None so far.
         refuted: whether there is none.
     """
@@ -78,6 +80,7 @@ class _AnyMotion:
         there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
         self._prover = Prover(there, 0, log=[] if logged else None)
         self._search: Search | None = None
+        self.depth = depth
         self.motion: Candidate | None = None
         self.refuted = False
 
