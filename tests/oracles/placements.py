@@ -51,7 +51,7 @@ def faults(robot, tool, settings, T_base_part, hole_plan, error):
         wrong.append("limit")
     if settings.blend > 0:
         curve = blend(motion.profile, motion.profile.corner, settings.blend, 2000)
-        posture = posture_of(robot.arm, motion.joints[:1])
+        posture = posture_of(robot.arm, motion.joints[0])
         joints = follow(robot, tool, hole, curve, posture, motion.joints[motion.profile.corner])
         ways = np.sign(motion.joints[-1] - motion.joints[0])
         turned = reversals(Track(curve, joints))

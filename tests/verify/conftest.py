@@ -101,7 +101,7 @@ def wrist_offset(robot, tool):
 def honest(robot, tool, hole, profile, start, status="evaluated", samples=20_000):
     """A plan whose claims are measured: joints followed from near `start`."""
     path = legs(profile, samples)
-    track = Track(path, follow(robot, tool, hole, path, posture_of(robot.arm, start[None]), start))
+    track = Track(path, follow(robot, tool, hole, path, posture_of(robot.arm, start), start))
     turned = reversals(track)
 
     def event(joint, index):

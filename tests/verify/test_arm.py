@@ -3,29 +3,8 @@
 import numpy as np
 import pytest
 
+from oracles.check_arm import forward
 from zerorev.verify.arm import Posture, branch_of, hand, posture_of, skeleton, solve, with_turns
-
-
-def elementary(axis, angle):
-    c, s = np.cos(angle), np.sin(angle)
-    i, j = {"y": (2, 0), "z": (0, 1)}[axis]
-    T = np.eye(4)
-    T[i, i], T[i, j], T[j, i], T[j, j] = c, -s, s, c
-    return T
-
-
-def shift(x, y, z):
-    T = np.eye(4)
-    T[:3, 3] = x, y, z
-    return T
-
-
-def flange_slowly(arm, joints):
-    """The same product, one 4x4 matrix after the other."""
-    q = [s * angle - o for s, angle, o in zip(arm.sign, joints, arm.offset, strict=True)]
-    T = elementary("z", q[0]) @ shift(arm.a1, 0, arm.c1) @ elementary("y", q[1]) @ shift(0, 0, arm.c2)
-    T = T @ elementary("y", q[2]) @ shift(arm.a2, arm.b, arm.c3)
-    return T @ elementary("z", q[3]) @ elementary("y", q[4]) @ elementary("z", q[5]) @ shift(0, 0, arm.c4)
 
 
 def random_joints(robot, count, seed):
@@ -47,22 +26,36 @@ def test_the_joint_targets_of_appendix_b_put_the_tip_where_the_program_says(kuka
     np.testing.assert_allclose((psi - spins + 180) % 360 - 180, 0, atol=2e-4)
 
 
-def test_forward_kinematics_is_the_product_of_elementary_motions(robot):
+def sums(R, wrist):
+    """A pose that depends on neither stand-off nor spin, as `solve` takes it."""
+    return tuple(tuple((value, 0.0, 0.0, 0.0) for value in column) for column in [*R.T.tolist(), wrist.tolist()])
+
+
+def solved(arm, joints, posture):
+    """The joints in a posture of the pose that joints (6,) reach, shape (6,)."""
+    x, y, z, wrist = hand(arm, joints[None])[:, :, 0]
+    return solve(arm, sums(np.stack([x, y, z], axis=-1), wrist), posture, np.zeros(1), np.zeros(1))[0]
+
+
+def test_the_skeleton_ends_at_the_flange(robot):
     joints = random_joints(robot, 50, 1)
     body = skeleton(robot.arm, joints)
-    slow = np.array([flange_slowly(robot.arm, row) for row in joints])
-    np.testing.assert_allclose(body.flange.T, slow[:, :3, 3], atol=1e-14)
-    np.testing.assert_allclose(np.moveaxis(body.R_base_flange, -1, 0), slow[:, :3, :3], atol=1e-14)
+    poses = np.array([forward(robot.arm, row) for row in joints])
+    np.testing.assert_allclose(body.flange.T, poses[:, :3, 3], atol=1e-14)
+    np.testing.assert_allclose(np.moveaxis(body.R_base_flange, -1, 0), poses[:, :3, :3], atol=1e-14)
+    elbows = np.linalg.norm(body.elbow - body.shoulder, axis=0)
+    np.testing.assert_allclose(elbows, robot.arm.c2, atol=1e-14)
+    forearms = np.linalg.norm(body.wrist - body.elbow, axis=0)
+    np.testing.assert_allclose(forearms, np.linalg.norm([robot.arm.a2, robot.arm.b, robot.arm.c3]), atol=1e-14)
 
 
 def test_inverse_gives_back_the_joints_it_came_from(robot):
-    joints = random_joints(robot, 20_000, 2)
-    body = skeleton(robot.arm, joints)
-    back = solve(robot.arm, hand(robot.arm, joints), posture_of(robot.arm, joints))
+    joints = random_joints(robot, 2_000, 2)
+    back = np.array([solved(robot.arm, row, posture_of(robot.arm, row)) for row in joints])
     off = np.abs(np.angle(np.exp(1j * (back - joints)))).max(axis=1)
     # within a hair of a singular posture the angles are ill-conditioned, not wrong
     assert np.mean(off < 1e-10) > 0.999
-    again = skeleton(robot.arm, back)
+    body, again = skeleton(robot.arm, joints), skeleton(robot.arm, back)
     np.testing.assert_allclose(again.flange, body.flange, atol=1e-10)
     np.testing.assert_allclose(again.R_base_flange, body.R_base_flange, atol=1e-10)
 
@@ -72,8 +65,8 @@ def test_all_eight_postures_reach_the_same_pose_on_eight_branches(robot):
     body = skeleton(robot.arm, joints)
     branches = []
     for signs in np.ndindex(2, 2, 2):
-        posture = Posture(*(np.array([1.0 - 2 * s]) for s in signs))
-        back = solve(robot.arm, hand(robot.arm, joints), posture)
+        posture = Posture(*(1.0 - 2.0 * s for s in signs))
+        back = np.array([solved(robot.arm, row, posture) for row in joints])
         found = np.isfinite(back).all(axis=1)
         again = skeleton(robot.arm, back[found])
         np.testing.assert_allclose(again.flange, body.flange[:, found], atol=1e-9)
@@ -103,25 +96,21 @@ def test_branch_follows_the_conventions(kuka, joints_deg, branch):
 
 def test_elbow_below_is_mirrored_behind_axis_1(kuka):
     """Half a turn of axis 1 with a mirrored arm reaches the same place: the elbow is above in both or below in both."""
-    joints = np.deg2rad(np.array([[10.0, -120, 120, 20, 60, 0]]))
+    joints = np.deg2rad(np.array([10.0, -120, 120, 20, 60, 0]))
     heights = {}
     for reach in (1.0, -1.0):
         for elbow in (1.0, -1.0):
-            posture = Posture(np.array([reach]), np.array([elbow]), np.array([1.0]))
-            back = solve(kuka.arm, hand(kuka.arm, joints), posture)
-            limb = skeleton(kuka.arm, back)
-            heights[branch_of(kuka.arm, back[0]) & 6] = limb.elbow[2, 0]
+            back = solved(kuka.arm, joints, Posture(reach, elbow, 1.0))
+            heights[branch_of(kuka.arm, back) & 6] = skeleton(kuka.arm, back[None]).elbow[2, 0]
     assert heights[0] > heights[2]
     assert heights[4] > heights[6]
 
 
 def test_out_of_reach_and_singular_are_nan_without_a_warning(robot):
-    ahead = Posture(*(np.ones(1) for _ in range(3)))
-    level = np.eye(3)[:, :, None]
-    far = np.concatenate([level, [[[9.0], [0.0], [1.0]]]])
-    assert np.isnan(solve(robot.arm, far, ahead)).any()
-    stretched = [[[robot.arm.a1], [robot.arm.b], [robot.arm.c1 + robot.arm.c2 + robot.arm.c3]]]
-    assert solve(robot.arm, np.concatenate([level, stretched]), ahead).shape == (1, 6)
+    ahead, level, none = Posture(1.0, 1.0, 1.0), np.eye(3), np.zeros(1)
+    assert np.isnan(solve(robot.arm, sums(level, np.array([9.0, 0.0, 1.0])), ahead, none, none)).any()
+    upright = np.array([robot.arm.a1, robot.arm.b, robot.arm.c1 + robot.arm.c2 + robot.arm.c3])
+    assert solve(robot.arm, sums(level, upright), ahead, none, none).shape == (1, 6)
 
 
 def test_turns_are_continued_and_whole():

@@ -22,7 +22,7 @@ from zerorev.verify.sound import limit_distances
 
 def track_of(robot, tool, hole, profile, start, samples=20_000):
     path = legs(profile, samples)
-    return Track(path, follow(robot, tool, hole, path, sampled_posture(robot.arm, start[None]), start))
+    return Track(path, follow(robot, tool, hole, path, sampled_posture(robot.arm, start), start))
 
 
 def joints_at(robot, tool, hole, profile, start):

@@ -57,7 +57,7 @@ def test_position_2_with_constant_spin_backs_up_joint_5_and_rests_joint_4(kuka, 
     plan = published(2, (180, 180, 180))
     path = legs(plan.motion.profile, 40_000)
     start = plan.motion.joints[0]
-    joints = follow(kuka, drill, plan.hole, path, posture_of(kuka.arm, start[None]), start)
+    joints = follow(kuka, drill, plan.hole, path, posture_of(kuka.arm, start), start)
     plunge = np.rad2deg(joints[: path.corner + 1])
     assert round(abs(plunge[-1, 4] - plunge[0, 4]), 3) == 0.041
     assert np.ptp(plunge[:, 3]) < 1e-10
@@ -126,24 +126,26 @@ def test_it_is_quick(kuka, drill, settings, published):
         begin = time.perf_counter()
         verify_hole(kuka, drill, settings, plan)
         times.append(time.perf_counter() - begin)
-    assert min(times) < 0.5  # 0.08 s on an idle core
+    assert min(times) < 0.05  # 4 ms on an idle core
 
 
 def test_it_sees_the_model_alone():
     allowed = ("zerorev.model", "zerorev.errors", "zerorev.verify", "numpy", "flint")
+    compiler = {"compiled.py": "zerorev.kernels._jit"}
     for file in Path(zerorev.verify.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text())):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             names += [node.module] if isinstance(node, ast.ImportFrom) else []
             for name in names:
                 standard = name.split(".")[0] in sys.stdlib_module_names
-                assert standard or name.startswith(allowed), f"{file.name} imports {name}"
+                own = standard or name.startswith(allowed) or name == compiler.get(file.name)
+                assert own, f"{file.name} imports {name}"
 
 
 def test_tracks_agree_with_their_samples(kuka, drill, published):
     plan = published(3)
     path = legs(plan.motion.profile, 100)
     start = plan.motion.joints[0]
-    track = Track(path, follow(kuka, drill, plan.hole, path, posture_of(kuka.arm, start[None]), start))
+    track = Track(path, follow(kuka, drill, plan.hole, path, posture_of(kuka.arm, start), start))
     np.testing.assert_allclose(track.joints[list(path.knots)], plan.motion.joints, atol=1e-12)
     assert isinstance(plan.hole, Hole)

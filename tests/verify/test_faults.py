@@ -95,7 +95,7 @@ def test_a_wrong_branch(check, kuka, drill, plan):
     said(check(motion(plan, branch=5)), "of branch 4, the plan says 5")
     # the other flip of the wrist reaches every pose too; only the number of the branch tells
     path, start = legs(plan.motion.profile, 3), plan.motion.joints[0]
-    posture = posture_of(kuka.arm, start[None])
+    posture = posture_of(kuka.arm, start)
     flipped = follow(kuka, drill, plan.hole, path, Posture(*posture[:2], -posture.flip), start)
     said(check(motion(plan, joints=flipped[list(path.knots)])), "of branch 5, the plan says 4")
 

@@ -33,7 +33,7 @@ def test_rates_are_those_of_the_motion(robot, drill, random_hole, seed):
     """Central differences of the inverse kinematics, lateral offsets and negative signs among them."""
     hole, profile, start = random_hole(robot, drill, seed)
     s, psi = np.linspace(profile.standoff[0], 0, 9), np.linspace(0.0, 0.1, 9)
-    posture = posture_of(robot.arm, start[None])
+    posture = posture_of(robot.arm, start)
 
     def joints(s, psi):
         return follow(robot, drill, hole, Path(s, psi, (), 0), posture, start)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 
 import numpy as np
 
 __all__ = ["fingerprint"]
+
+_FLOAT = struct.Struct("<d")
 
 
 def fingerprint(*things: object) -> str:
@@ -21,34 +23,33 @@ def fingerprint(*things: object) -> str:
     Raises:
         TypeError: something else in them.
     """
-    found = hashlib.sha256()
-    for piece in _pieces(things):
-        found.update(piece)
-    return found.hexdigest()
+    pieces: list[bytes] = []
+    _add(things, pieces)
+    return hashlib.sha256(b"".join(pieces)).hexdigest()
 
 
-def _pieces(thing: object) -> Iterator[bytes]:
+def _add(thing: object, pieces: list[bytes]) -> None:
     """Bytes that tell a thing from every other: its kind and its size go before its content."""
     if thing is None or isinstance(thing, bool | int):
-        yield f"{thing!r};".encode()
+        pieces.append(f"{thing!r};".encode())
     elif isinstance(thing, float):
-        yield b"f" + struct.pack("<d", thing)
+        pieces.append(b"f" + _FLOAT.pack(thing))
     elif isinstance(thing, str):
         text = thing.encode("utf-8", "surrogatepass")
-        yield b"s%d:" % len(text) + text
+        pieces.append(b"s%d:" % len(text) + text)
     elif isinstance(thing, np.ndarray):
-        yield f"a{thing.dtype.str}{thing.shape}:".encode() + thing.tobytes()
+        pieces.append(f"a{thing.dtype.str}{thing.shape}:".encode() + thing.tobytes())
     elif isinstance(thing, np.generic):
-        yield from _pieces(thing.item())
+        _add(thing.item(), pieces)
     elif isinstance(thing, tuple | list):
-        yield b"t%d:" % len(thing)
+        pieces.append(b"t%d:" % len(thing))
         for each in thing:
-            yield from _pieces(each)
+            _add(each, pieces)
     elif isinstance(thing, Mapping):
-        yield from _pieces(tuple(sorted(thing.items())))
+        _add(tuple(sorted(thing.items())), pieces)
     elif is_dataclass(thing):
-        yield from _pieces(type(thing).__qualname__)
+        _add(type(thing).__qualname__, pieces)
         for field in fields(thing):
-            yield from _pieces(getattr(thing, field.name))
+            _add(getattr(thing, field.name), pieces)
     else:
         raise TypeError(f"no fingerprint of a {type(thing).__name__}")

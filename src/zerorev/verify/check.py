@@ -76,7 +76,7 @@ def verify_hole(
         return Verification(False, 0, 0, (0,) * 6, np.nan, np.nan, np.nan, np.nan, flaws)
 
     hole, start = hole_plan.hole, motion.joints[0]
-    posture = posture_of(robot.arm, motion.joints[:1])
+    posture = posture_of(robot.arm, start)
     asked = legs(motion.profile, samples)
     track = Track(asked, follow(robot, tool, hole, asked, posture, start), robot.nil_rate)
     turned = reversals(track)

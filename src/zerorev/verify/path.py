@@ -13,7 +13,8 @@ from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import NIL_RATE, Robot
 from zerorev.model.tool import Tool
-from zerorev.verify.arm import Posture, blocks, cos_sin, hand, solve, with_turns
+from zerorev.verify import compiled
+from zerorev.verify.arm import Posture, Sums, solve, with_turns
 
 __all__ = ["Path", "Track", "around", "blend", "follow", "joined", "legs", "residual"]
 
@@ -192,11 +193,8 @@ def follow(robot: Robot, tool: Tool, hole: Hole, path: Path, posture: Posture, s
     Returns:
         Controller angles [rad], shape (N, 6); NaN out of reach.
     """
-    wanted = _flange(robot, tool, _asked(hole))
-    q = np.empty((6, path.psi.size))
-    for block in blocks(path.psi.size):
-        q[:, block] = solve(robot.arm, wanted @ _along(path, block), posture).T
-    return with_turns(q.T, start)
+    wanted = _sums(_flange(robot, tool, _asked(hole)))
+    return with_turns(solve(robot.arm, wanted, posture, path.standoff, path.psi), start)
 
 
 def residual(robot: Robot, tool: Tool, hole: Hole, path: Path, joints: Array) -> tuple[Array, Array]:
@@ -212,45 +210,40 @@ def residual(robot: Robot, tool: Tool, hole: Hole, path: Path, joints: Array) ->
     Returns:
         Distance between the tips [m] and angle between the tools [rad], each of shape (N,).
     """
-    # what the tool is off by is a sum of what the arm gives (4 vectors) and of what the path asks for (4 numbers)
-    T = tool.T_flange_tcp
-    reached = np.zeros((4, 4))
-    reached[:3, :3], reached[3, :3], reached[3, 3] = T[:3, :3].T, T[:3, 3] + [0, 0, robot.arm.c4], 1.0
-    asked = _asked(hole)
-    off2, chord2 = np.empty(path.psi.size), np.empty(path.psi.size)
-    for block in blocks(path.psi.size):
-        body = hand(robot.arm, joints[block])
-        off = (reached @ body.reshape(4, -1)).reshape(body.shape)
-        off -= asked @ _along(path, block)
-        off *= off
-        np.sum(off[3], axis=0, out=off2[block])
-        np.sum(off[:3].reshape(9, -1), axis=0, out=chord2[block])
+    T, reached = tool.T_flange_tcp, np.eye(4)
+    reached[:3, :3], reached[3, :3] = T[:3, :3].T, T[:3, 3] + [0, 0, robot.arm.c4]
+    off2, chord2 = np.empty((2, path.psi.size))
+    q = np.ascontiguousarray(joints.T)
+    weights, asked = tuple(map(tuple, reached.tolist())), _sums(_asked(hole))
+    compiled.residual(robot.arm, weights, asked, path.standoff, path.psi, q, off2, chord2)
     # |R - R'| (Frobenius) = 2 sqrt(2) sin(angle / 2): exact for small angles, where an arccos of the trace is not
-    return np.sqrt(off2), 2 * np.arcsin(np.minimum(np.sqrt(chord2 / 8), 1.0))
+    half_sine = np.minimum(np.sqrt(chord2 / 8, out=chord2), 1.0, out=chord2)
+    return np.sqrt(off2, out=off2), 2 * np.arcsin(half_sine, out=half_sine)
 
 
 def _asked(hole: Hole) -> Array:
-    """The tool in the twist plane, shape (4, 3, 4): its axes x, y, z and its tip [m] as sums over `_along`.
+    """The tool in the twist plane: its axes x, y, z and its tip [m] as `Sums`, shape (4, 3, 4).
 
     The tool's Z is -direction; its Y is psi_zero turned by psi about Z.
     """
     z, y = -hole.direction, hole.psi_zero
-    x, none = np.cross(y, z), np.zeros(3)
-    axes = [(none, none, x, y), (none, none, y, -x), (z, none, none, none)]
-    return np.array([np.transpose(each) for each in (*axes, (hole.target, z, none, none))])
+    x = np.array([y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0]])
+    asked = np.zeros((4, 3, 4))
+    asked[0, :, 2], asked[0, :, 3] = x, y
+    asked[1, :, 2], asked[1, :, 3] = y, -x
+    asked[2, :, 0] = z
+    asked[3, :, 0], asked[3, :, 1] = hole.target, z
+    return asked
 
 
 def _flange(robot: Robot, tool: Tool, asked: Array) -> Array:
     """The axes of the flange and the wrist centre, as `_asked` has the tool's axes and its tip, shape (4, 3, 4)."""
-    T = tool.T_flange_tcp
-    axes = np.tensordot(T[:3, :3], asked[:3], axes=1)
-    wrist = asked[3] - np.tensordot(T[:3, 3] + [0, 0, robot.arm.c4], axes, axes=1)
-    return np.concatenate([axes, wrist[None]])
+    T, flange = tool.T_flange_tcp, np.empty((4, 3, 4))
+    flange[:3] = (T[:3, :3] @ asked[:3].reshape(3, 12)).reshape(3, 3, 4)
+    flange[3] = asked[3] - ((T[:3, 3] + [0, 0, robot.arm.c4]) @ flange[:3].reshape(3, 12)).reshape(3, 4)
+    return flange
 
 
-def _along(path: Path, part: slice) -> Array:
-    """What places and axes of the tool depend on: 1, stand-off [m], cos psi, sin psi; shape (4, N)."""
-    at = np.empty((4, path.psi[part].size))
-    at[0], at[1] = 1.0, path.standoff[part]
-    at[2], at[3] = cos_sin(path.psi[part])
-    return at
+def _sums(values: Array) -> Sums:
+    """An array of shape (4, 3, 4) as kernels take it."""
+    return tuple(tuple(map(tuple, rows)) for rows in values.tolist())

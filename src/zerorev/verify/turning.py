@@ -49,7 +49,7 @@ class Course:
             start: joints at the first breakpoint [rad], shape (6,): their posture and turns are the motion's.
         """
         self.robot, self.tool, self.hole, self.profile, self._start = robot, tool, hole, profile, start
-        self._posture = posture_of(robot.arm, start[None])
+        self._posture = posture_of(robot.arm, start)
         self._steps = np.diff([profile.standoff, profile.psi])
         lengths = np.abs(self._steps[0])
         before = np.arange(lengths.size) < profile.corner
