@@ -123,3 +123,35 @@ def test_a_cache_that_cannot_be_locked_is_done_without(tmp_path: Path):
     with _jit._turn.needed():
         assert _jit._turn.taken(str(tmp_path))
         assert not _jit._turn.taken(str(tmp_path))
+
+
+LEGS = """
+import numpy as np
+import zerorev as zr
+from zerorev.kernels import legs
+from zerorev.kernels.field import ROOM
+from zerorev.kinematics import twist_plane
+
+robot = zr.read_robot("kuka_kr6_r700_2")
+plane = twist_plane(robot, zr.read_tool("thesis_drill"), zr.Hole("one", [0.5, 0.3, 0.8], [1, 0, 0], 0.01))
+out = np.full((60, legs.ROWS, 6), np.nan)
+for leg, psi in zip(out, np.linspace(-3, 3, 60)):
+    legs.trace_leg(robot.arm, plane, 4, psi, 1.7, 0.05, 24, np.empty(ROOM), leg)
+assert np.isfinite(out).sum() > 1000
+print(sum(legs.trace_leg.stats.cache_misses.values()), out.tobytes().hex())
+"""
+
+
+@compiled
+@pytest.mark.long
+def test_the_process_that_compiles_finds_the_same_to_the_last_bit_as_one_that_loads(tmp_path: Path):
+    """A dozen kernels, of which those that are called differ in the last bits between the copies of them."""
+
+    def run() -> list[str]:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+        done = subprocess.run([sys.executable, "-c", LEGS], env=environment, capture_output=True, text=True, check=True)
+        return done.stdout.split()
+
+    (compiled_once, first), (compiled_again, second) = run(), run()
+    assert (compiled_once, compiled_again) == ("1", "0")
+    assert first == second

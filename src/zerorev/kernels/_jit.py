@@ -13,6 +13,7 @@ from typing import Any
 import numba
 from numba.core import event
 from numba.core.caching import FunctionCache, IndexDataCacheFile
+from numba.core.codegen import CPUCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
@@ -58,12 +59,40 @@ class _Cache(FunctionCache):
             return None
 
 
+@contextmanager
+def _own_copies() -> Iterator[None]:
+    """Whatever is compiled meanwhile calls its own copies of the kernels that it calls, and no others.
+
+    Numba compiles what a kernel calls into the kernel once more, under the same name, and optimises each copy in its
+    place, so that they round differently. All copies of a name in a process give way to the first: in the process that
+    compiles that is the one by itself, in those that load it is that of the kernel which is loaded first. With a name
+    of its own each is used where it was made, and no result depends on what was compiled or loaded before.
+    """
+    finalize = CPUCodeLibrary._finalize_final_module
+
+    def finalize_with_own_copies(library: Any) -> None:
+        if library._shared_module is None:  # not loaded, but compiled
+            library._shared_module = library._final_module.clone()  # for others to link, as Numba makes it
+            for function in library._shared_module.functions:
+                if not function.is_declaration and function.linkage.name == "external":
+                    function.linkage = "linkonce_odr"
+            for function in library._final_module.functions:
+                if not function.is_declaration and function.linkage.name == "linkonce_odr":
+                    function.linkage = "internal"
+        finalize(library)  # type: ignore[no-untyped-call]
+
+    CPUCodeLibrary._finalize_final_module = finalize_with_own_copies  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        CPUCodeLibrary._finalize_final_module = finalize  # type: ignore[method-assign]
+
+
 class _Turn:
     """The turn to compile: one process at a time, so that what several processes need at once is compiled once.
 
     The same kernel compiled twice need not round alike: how what it calls is inlined depends on whether that was
-    compiled in the same process or loaded. One difference is left: the process that has compiled a kernel may go on
-    with another copy of what that calls than those that load it, and then the last digits differ between them.
+    compiled in the same process or loaded.
     """
 
     def __init__(self) -> None:
@@ -73,7 +102,7 @@ class _Turn:
     @contextmanager
     def needed(self) -> Iterator[None]:
         """Around the compilation of a kernel and of all that it calls; a turn that was taken ends with it."""
-        with global_compiler_lock:  # one thread at a time
+        with global_compiler_lock, _own_copies():  # one thread at a time
             self._depth += 1
             try:
                 yield
