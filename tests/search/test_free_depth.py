@@ -12,7 +12,7 @@ from oracles import free_walks, holes
 from zerorev.model.hole import Hole
 from zerorev.optimum import deepest_as_drilled
 from zerorev.search.bounds.free_depth import bound_free_depth
-from zerorev.search.free_deepest import deepest_free
+from zerorev.search.free_deepest import CLOSEST, deepest_free
 from zerorev.search.problem import Problem
 
 BUDGET = 50_000
@@ -37,14 +37,33 @@ def free(seed):
     return drilled.asking(max_twist=float(cap), psi_bound=2.0 if seed % 5 == 0 else None)
 
 
+def evaluated(drilled, *effort):
+    """The deepest stroke that is found [m]; its motion has no reversal, keeps the threshold and the cap."""
+    found, profile, branch = deepest_free(*drilled.all, *effort)
+    if profile is None:
+        return 0.0
+    hole = replace(drilled.hole, depth=found)
+    seen = zr.evaluate(drilled.robot, drilled.tool, hole, profile, branch, drilled.settings)
+    assert seen.score.reversals == 0
+    assert not [finding for finding in seen.findings if finding.kind in ("limit", "threshold")]
+    assert (seen.score.min_rate >= drilled.settings.min_rate).all()
+    assert np.abs(profile.twist_rate).max() <= drilled.settings.max_twist * (1 + 1e-9)
+    return found
+
+
 def check_against_the_found(seed):
     drilled = free(seed)
-    found, profile, branch = deepest_free(*drilled.all)
-    if profile is None:
-        return
-    score = zr.evaluate(drilled.robot, drilled.tool, replace(drilled.hole, depth=found), profile, branch).score
-    assert score.reversals == 0
-    assert unknowing(drilled, found) >= found
+    found = evaluated(drilled)
+    if found > 0:
+        assert unknowing(drilled, found) >= found
+
+
+def check_against_very_many_segments(seed):
+    """On holes whose sets of spins, which nobody evaluates, were up to half deeper than the bound."""
+    drilled = holes.random_hole(seed, legs="free", narrowed=seed % 4 == 0)
+    usual, inner = evaluated(drilled), evaluated(drilled, CLOSEST)
+    assert inner <= bound_free_depth(Problem(*drilled.all), LESS * inner, BUDGET).at_most
+    assert usual >= 0.95 * inner > 0.0
 
 
 def check_against_walks(seed, spins, tries):
@@ -67,6 +86,10 @@ class TestBound:
     @pytest.mark.parametrize("seed", range(900, 908))
     def test_is_never_below_a_stroke_that_is_found(self, seed):
         check_against_the_found(seed)
+
+    @pytest.mark.parametrize("seed", [20, 24])
+    def test_is_never_below_what_very_many_segments_attain(self, seed):
+        check_against_very_many_segments(seed)
 
     def test_is_never_below_random_legs(self):
         assert sum(check_against_walks(seed, 40, 8) for seed in range(940, 944)) > 0
@@ -106,6 +129,11 @@ class TestBound:
     def test_is_never_below_a_stroke_that_is_found_on_many_holes(self):
         for seed in range(910, 926):
             check_against_the_found(seed)
+
+    @pytest.mark.long
+    def test_is_never_below_what_very_many_segments_attain_on_more_holes(self):
+        for seed in (2, 28, 34, 37, 50, 56):
+            check_against_very_many_segments(seed)
 
     @pytest.mark.long
     def test_is_never_below_random_legs_on_many_holes(self):

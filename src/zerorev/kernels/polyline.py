@@ -24,6 +24,7 @@ LOOKS = 5  # points of a segment
 TRIALS = 14  # slopes tried for each segment, at most
 AGREES = 3e-4  # relative, of a slope
 AWAY = 0.02  # from the last slope that is admissible, towards the middle of those that are
+FEW = 64  # segments: of more of them each is that much less away
 MISSED = 1e-3  # [rad] by which a corridor is widened between its rows, for the straight lines that join them
 INNER = np.array([0.0, 0.03, 0.1, 0.3, 0.6])  # of an interval: how far from its end spins are tried
 
@@ -189,6 +190,8 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
         whether there is one.
     """
     wants, here, slopes, low, high = np.array([1.0, -1.0]), np.empty(2), np.empty(2), np.empty(2), np.empty(2)
+    # next to an end of what is viable each segment comes nearer to it by such a share, so the more there are the less
+    away = AWAY * FEW / max(FEW, standoff.shape[0] - 1)
     for n in range(standoff.shape[0] - 1):
         length = standoff[n + 1] - standoff[n]
         slack = AGREES * (abs(spins[n + 1, 0] - psi[n]) + abs(spins[n + 1, 1] - psi[n]) + length)
@@ -206,7 +209,7 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
             return False
         # towards the middle of the viable spins: the middle of the slopes would come nearer to an end step by step
         slope = min(max((0.5 * (spins[n + 1, 0] + spins[n + 1, 1]) - psi[n]) / length, least), most)
-        psi[n + 1] = psi[n] + length * (slope + AWAY * (0.5 * (least + most) - slope))
+        psi[n + 1] = psi[n] + length * (slope + away * (0.5 * (least + most) - slope))
     return True
 
 

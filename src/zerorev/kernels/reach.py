@@ -4,7 +4,8 @@ A free leg is any curve psi(s) whose slope u is admissible everywhere: with the 
 fixed, sigma_i (theta_s,i + u theta_psi,i) >= m for all i, and |u| no more than the greatest twist rate. At a point of
 the twist plane that leaves one interval of slopes [lo, hi], or none. So the spins that legs out of a set of spins can
 reach at a stand-off are a union of intervals, whose ends move outwards at lo and at hi, and which are cut where no
-slope is admissible, or a joint is beyond its limits. These are the *reachable* sets.
+slope is admissible, or a joint is beyond its limits. These are the *reachable* sets. They are estimates: a set is cut
+at the rows of its tube and at spins a little apart, so that it may jump a thin stretch that no leg can pass.
 
 A *set of spins* is an array of shape (KEPT, 2) and a count, a *tube* the sets at a few stand-offs: `standoff` (R,),
 `counts` (R,), `sets` (R, KEPT, 2). The signs `side` are those of the outward rates on the unflipped wrist, which is

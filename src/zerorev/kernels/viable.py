@@ -2,7 +2,8 @@
 
 Carried back inwards from a depth, within the reachable sets (`kernels.reach`), sets of spins become *viable*: from
 their spins, and from no others, a leg gets to that depth. So two legs of a depth, one for the signs sigma and one for
-their opposites, exist if and only if their viable sets meet at the target.
+their opposites, exist if and only if their viable sets meet at the target. As made here the sets are estimates, see
+`kernels.reach`.
 
 Sets and tubes are those of `kernels.reach`. Lengths in m, angles in rad, slopes outwards in rad/m. No kernel raises.
 """

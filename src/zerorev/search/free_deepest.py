@@ -1,9 +1,10 @@
 """The deepest stroke of free legs, and a motion that reaches it but for a few per cent (theory §4).
 
-Viable sets say how deep legs get that are any curves (`search.viable`). What a controller runs are straight segments:
-`kernels.polyline` makes viable sets for these, with the breakpoints where the curve bends most, and a search along the
-depth ends with the deepest pair of such legs. Limits of joints that can turn more than once round depend on the turns:
-they are left out at first, and where a motion passes one the search is repeated with the turns that leave it most room.
+Viable sets estimate how deep legs get that are any curves (`search.viable`). What a controller runs are straight
+segments: `kernels.polyline` makes viable sets for these, with the breakpoints where the curve bends most, and a search
+along the depth ends with the deepest pair of such legs. Limits of joints that can turn more than once round depend on
+the turns: they are left out at first, and where a motion passes one the search is repeated with the turns that leave it
+most room.
 
 A greater bound on the twist rate never gives a lesser stroke: where it allows no curve to get deeper than a lesser
 bound does, from a fixed series, the lesser bound is taken.
@@ -27,28 +28,50 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.search.segments import Legs, motion_of
+from zerorev.search.segments import Legs, breakpoints_of, motion_of
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST
-from zerorev.search.viable import COARSE_ROWS, ROWS, Family, Grain, Held, Pair, Viable
+from zerorev.search.viable import MOST_ROWS, ROWS, Family, Grain, Held, Pair, Viable
 
-__all__ = ["SEGMENTS", "deepest_free"]
+__all__ = ["CLOSEST", "SEGMENTS", "Effort", "deepest_free"]
 
 SEGMENTS = 64  # of a leg
 LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the straight lines by which rows are joined
-GUARDS = tuple(np.deg2rad([0.2, 1.0, 4.0]).tolist())  # [rad/m] beyond the threshold, for what lies between the points
 KEPT_BACK = (0.001, 0.003, 0.01)  # of the deepest, so that legs keep away from the ends of the viable sets
 CLOSE = 2e-3  # relative: to which the depth is located
 FIRST, SHALLOWEST = 0.97, 0.1  # of the depth of all curves: where the search along the depth begins, and ends
-EVENLY = 0.3  # of the breakpoints: as many for each length of the leg
-BENT = 400  # points at which it is asked how much a leg bends
 SERIES = tuple(2.0**n for n in range(20, -8, -1))  # of bounds on the twist rate, times the length of the stretched arm
 SAME = 5e-3  # relative: what a greater bound on the twist rate must gain to be tried
 OWN = 1e-2  # the same of the bound that is set, against the series, which all bounds share
 NEARLY = 0.97  # of the deepest: which lesser bounds may lead to better motions
 GOOD = 0.9  # of the depth of all curves: a motion that is less deep was not found well
+SHORT = 0.96  # of that depth: where a motion is less deep the sets, too, may be at fault, which jump what is thin
 
 
-def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[float, Profile | None, int | None]:
+class Effort(NamedTuple):
+    """How closely legs are searched.
+
+    Attributes:
+        rows: of the sets of spins, within the depth.
+        finer: rows that are tried where the motion found with the first is well short of their sets; 0: none.
+        segments: of a leg.
+        guards: what joints keep beyond the threshold, for what lies between the points that are examined: what is tried
+            one after the other [rad/m].
+    """
+
+    rows: int
+    finer: int
+    segments: int
+    guards: tuple[float, ...]
+
+
+USUAL = Effort(ROWS, 4 * ROWS, SEGMENTS, tuple(np.deg2rad([0.05, 0.2, 1.0, 4.0]).tolist()))
+# for comparison: what legs of very many segments attain
+CLOSEST = Effort(MOST_ROWS, 0, 8 * SEGMENTS, tuple(np.deg2rad([0.02, 0.2, 1.0, 4.0]).tolist()))
+
+
+def deepest_free(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort = USUAL
+) -> tuple[float, Profile | None, int | None]:
     """The deepest stroke with zero reversals on free legs, and a motion that reaches it.
 
     Args:
@@ -57,17 +80,23 @@ def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tu
         hole: target, direction and reference of the spin; its `branch`, if any, is the only one searched; its depth
             does not matter.
         settings: `min_rate`, kept by every joint at every point; `max_twist`; `psi_bound`.
+        effort: how closely legs are searched.
 
     Returns:
         depth [m], profile and branch; 0, None, None where no stroke has zero reversals.
     """
     best: tuple[float, Profile | None, int | None] = (0.0, None, None)
+    short = False
     for steepest in (settings.max_twist, *_gentler(settings.max_twist, robot.reach)):
-        search = _Search(robot, tool, hole, replace(settings, max_twist=steepest))
+        search = _Search(robot, tool, hole, replace(settings, max_twist=steepest), effort)
         pairs = search.viable.pairs(best[0])
         best = max(best, search.best(pairs, best[0]), key=lambda deepest: deepest[0])
+        short = short or bool(pairs and best[0] < SHORT * pairs[0].depth)
         if not pairs or best[0] > GOOD * pairs[0].depth:
             break
+    if short and effort.finer:
+        search = _Search(robot, tool, hole, settings, effort._replace(rows=effort.finer))
+        best = max(best, search.best(search.viable.pairs(best[0]), best[0]), key=lambda deepest: deepest[0])
     return best
 
 
@@ -93,8 +122,8 @@ class _Curves(NamedTuple):
 class _Search:
     """One hole, and the deepest legs of straight segments out of its target."""
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
-        self.robot, self.tool, self.hole, self.settings = robot, tool, hole, settings
+    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort) -> None:
+        self.robot, self.tool, self.hole, self.settings, self.effort = robot, tool, hole, settings, effort
         limits = robot.limits
         self.held = Held(
             limits.lower + LIMIT_SLACK,
@@ -105,7 +134,7 @@ class _Search:
             LONGEST_TWIST,
         )
         branches = np.array([hole.branch in (None, branch) for branch in range(8)])
-        self.viable = Viable(robot.arm, twist_plane(robot, tool, hole), self.held, branches, robot.reach)
+        self.viable = Viable(robot.arm, twist_plane(robot, tool, hole), self.held, branches, robot.reach, effort.rows)
         self.beyond: Legs | None = None  # what passed a limit last
         self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.LOOKS))
 
@@ -162,8 +191,8 @@ class _Search:
     def alone(self, pair: Pair) -> _Curves:
         """How deep a pair gets: of nothing but the pair and the bound on the twist rate; its tubes are left as made."""
         sets = self.viable
-        bound = sets.bound(pair.family, pair.branch, True, Grain.of(sets.stretched, COARSE_ROWS))
-        grain = Grain.of(bound, ROWS)
+        bound = sets.bound(pair.family, pair.branch, True, sets.coarse)
+        grain = Grain.of(bound, sets.rows)
         bound = sets.bound(pair.family, pair.branch, True, grain)
         depth = sets.depth(pair.family, pair.branch, True, grain, SHALLOWEST * bound, bound) if bound > 0 else 0.0
         return _Curves(depth, sets.held.steepest, grain)
@@ -175,7 +204,7 @@ class _Search:
         part = self.breakpoints(pair, grain, depth)
         if part is None:
             return None
-        for guard in GUARDS:
+        for guard in self.effort.guards:
             guarded = self.viable.held._replace(min_rate=self.held.min_rate + guard)
             deepest = self.closed_in(pair, guarded, grain, part, depth)
             for back in KEPT_BACK:
@@ -194,7 +223,7 @@ class _Search:
 
         Only of joints that can turn more than once round: of the others the turns are known.
         """
-        joints = np.empty((2, SEGMENTS + 1, 6))
+        joints = np.empty((2, self.effort.segments + 1, 6))
         for k in range(2):
             angles_along(self.robot.arm, self.viable.plane, legs.standoff[k], legs.psi[k], pair.branch, joints[k])
         joints = np.unwrap(np.concatenate([joints[0, ::-1], joints[1, 1:]]), axis=0)
@@ -203,7 +232,7 @@ class _Search:
         turns = 2 * np.pi * np.rint((0.5 * (limits.lower + limits.upper) - middle) / (2 * np.pi))
         at_target = self.viable.room[-1]
         wide = (limits.upper - limits.lower >= 2 * np.pi) & np.isfinite(limits.upper - limits.lower)
-        at_target[wide] = (joints[SEGMENTS] + turns)[wide]
+        at_target[wide] = (joints[self.effort.segments] + turns)[wide]
         curves = self.alone(pair)
         found = self.polyline(pair, curves) if curves.depth > 0 else None
         at_target[:] = np.nan
@@ -211,7 +240,7 @@ class _Search:
 
     def breakpoints(self, pair: Pair, grain: Grain, depth: float) -> Array | None:
         """Where segments meet, as shares of the depth, shape (2, N + 1): close together where the slope changes."""
-        sets, out = self.viable, np.empty((2, SEGMENTS + 1))
+        sets, out = self.viable, np.empty((2, self.effort.segments + 1))
         if not self.meets(pair, grain, depth * (1 - CLOSE)):
             return None
         psi_t = sets.overlap.mean()
@@ -223,7 +252,7 @@ class _Search:
                 sets.arm, sets.plane, pair.branch, (1 - 2 * k) * pair.family.sense, sets.held, grain, tube, rows, psi_t,
                 sets.room, path, corridor,
             )  # fmt: skip
-            out[k] = _bent(tube[0][:rows], path, SEGMENTS)
+            out[k] = breakpoints_of(tube[0][:rows], path, self.effort.segments)
         return out
 
     def meets(self, pair: Pair, grain: Grain, depth: float) -> bool:
@@ -275,19 +304,3 @@ class _Search:
         score = seen.score
         good = score is not None and score.reversals == 0 and score.min_rate.min() >= self.settings.min_rate
         return profile if good else None
-
-
-def _bent(standoff: Array, psi: Array, count: int) -> Array:
-    """Shares of a leg at which segments meet: as many as the root of its bend asks for, and some evenly.
-
-    What a segment loses against a curve is in proportion to its length times the change of the slope along it, so that
-    with a given number the least is lost where both are balanced.
-    """
-    slope = np.diff(psi) / np.diff(standoff)
-    bend = np.sqrt(np.abs(np.diff(slope)) / (0.5 * (standoff[2:] - standoff[:-2])))
-    s = np.linspace(0.0, standoff[-1], BENT)
-    dense = np.interp(s, standoff[1:-1], bend)
-    dense = dense / max(dense.mean(), 1e-12) + EVENLY
-    passed = np.append(0.0, np.cumsum(0.5 * (dense[1:] + dense[:-1])))
-    share: Array = np.interp(np.linspace(0.0, passed[-1], count + 1), passed, s) / standoff[-1]
-    return share

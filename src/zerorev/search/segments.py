@@ -15,7 +15,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
 from zerorev.search.straight import LONGEST_TWIST
 
-__all__ = ["Goal", "Legs", "Rules", "bettered", "legs_through", "motion_of"]
+__all__ = ["Goal", "Legs", "Rules", "bettered", "breakpoints_of", "legs_through", "motion_of"]
 
 Goal = Literal["depth", "travel", "margin", "plunge_rotation"]
 GOALS: dict[Goal, int] = {
@@ -24,6 +24,8 @@ GOALS: dict[Goal, int] = {
 
 STEPS = 120
 ENOUGH = 1e-6  # relative: less is no gain
+EVENLY = 0.3  # of the breakpoints: as many for each length of the leg
+BENT = 400  # points at which it is asked how much a leg bends, at least
 
 
 class Rules(NamedTuple):
@@ -134,3 +136,27 @@ def bettered(
     shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, looks))
     lack = slp.better(arm, plane, branch, sense, rules, GOALS[goal], shares, steps, enough, weighed, standoff, psi)
     return Legs(standoff, psi), float(lack)
+
+
+def breakpoints_of(standoff: Array, psi: Array, count: int) -> Array:
+    """Shares of a leg at which segments meet: as many as the root of its bend asks for, and some evenly.
+
+    What a segment loses against a curve is in proportion to its length times the change of the slope along it, so that
+    with a given number the least is lost where both are balanced.
+
+    Args:
+        standoff: of a curve, from the target outwards [m], shape (n,).
+        psi: its spins [rad], shape (n,).
+        count: of segments.
+
+    Returns:
+        shares, 0 to 1, shape (count + 1,).
+    """
+    slope = np.diff(psi) / np.diff(standoff)
+    bend = np.sqrt(np.abs(np.diff(slope)) / (0.5 * (standoff[2:] - standoff[:-2])))
+    s = np.linspace(0.0, standoff[-1], max(BENT, 2 * count))
+    dense = np.interp(s, standoff[1:-1], bend)
+    dense = dense / max(dense.mean(), 1e-12) + EVENLY
+    passed = np.append(0.0, np.cumsum(0.5 * (dense[1:] + dense[:-1])))
+    share: Array = np.interp(np.linspace(0.0, passed[-1], count + 1), passed, s) / standoff[-1]
+    return share

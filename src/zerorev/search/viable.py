@@ -2,7 +2,13 @@
 
 Along the target line the signs of theta_psi say which way each joint goes on the leg above the critical rates; on the
 leg below it goes the other way. A *family* is an interval of spins at the target with the same signs, in one posture.
-The reachable sets of whole families bound how deep their legs get, so that viable sets are made for a few of them only.
+The reachable sets of whole families say how deep their legs get at most, so that viable sets are made for a few of them
+only.
+
+All depths here are estimates. Sets are cut at their rows and at spins a little apart, so that they may jump a stretch
+that no leg can pass, where it is thinner than that; and limits of joints that can turn more than once round are left
+out. What a leg attains is known of a motion that was evaluated (`search.free_deepest`), what none attains is proven
+by other sets (`search.bounds.free_depth`).
 """
 
 from __future__ import annotations
@@ -25,8 +31,9 @@ from zerorev.search.straight import target_spins
 __all__ = ["Family", "Grain", "Held", "Pair", "Tubes", "Viable"]
 
 GRID = 240  # spins at the target in one turn
-MAX_ROWS = 512  # of a tube
-COARSE_ROWS, ROWS = 60, 48  # of the stretched arm; of the depth in question
+MAX_ROWS = 512  # of a tube, which may get a little deeper
+COARSE_ROWS = 60  # of the stretched arm
+ROWS, MOST_ROWS = 48, 384  # of the depth in question: usually, and at most for the tubes to have room
 CLOSE = 1e-3  # relative: to which a depth is closed in on
 NEARLY = 0.97  # of the deepest: what gets nearly as deep is kept, too
 COARSE_SLACK = 1.02  # by how much coarse tubes may end too early
@@ -60,8 +67,9 @@ class Grain(NamedTuple):
 
     @classmethod
     def of(cls, depth: float, rows: int) -> Grain:
-        """For tubes of about a depth [m]."""
-        return cls(depth / rows, float(np.deg2rad(4)), float(np.deg2rad(2)), 1e-3 * depth)
+        """For tubes of about a depth [m]: the more rows, the closer the spins of each."""
+        finer = min(1.0, ROWS / rows)
+        return cls(depth / rows, float(np.deg2rad(4)) * finer, float(np.deg2rad(2)) * finer, 1e-3 * depth * finer)
 
 
 @dataclass(frozen=True)
@@ -127,9 +135,16 @@ class Viable:
     """
 
     def __init__(
-        self, arm: ArmGeometry, plane: TwistPlane, held: Held, branches: npt.NDArray[np.bool_], reach: float
+        self,
+        arm: ArmGeometry,
+        plane: TwistPlane,
+        held: Held,
+        branches: npt.NDArray[np.bool_],
+        reach: float,
+        rows: int = ROWS,
     ) -> None:
         self.arm, self.plane, self.held, self.branches, self.stretched = arm, plane, held, branches, reach
+        self.rows, self.coarse = rows, Grain.of(reach, max(COARSE_ROWS, rows // 2))
         self.room = workspaces()
         self.reached, self.viable, self.overlap = Tubes(), Tubes(), np.empty(2)
 
@@ -139,8 +154,9 @@ class Viable:
         Args:
             enough: [m]; what gets no deeper is left out.
         """
-        coarse = Grain.of(self.stretched, COARSE_ROWS)
-        bounds = [(self.bound(family, 2 * family.posture, False, coarse, enough), family) for family in self.families()]
+        bounds = [
+            (self.bound(family, 2 * family.posture, False, self.coarse, enough), family) for family in self.families()
+        ]
         found: list[Pair] = []
         for bound, family in sorted(bounds, key=lambda each: -each[0]):
             best = max((pair.depth for pair in found), default=enough)
@@ -151,14 +167,14 @@ class Viable:
 
     def _closer(self, family: Family, bound: float, enough: float) -> Iterator[Pair]:
         """The legs of a family on its branches, if they get deeper than `enough`."""
-        grain = Grain.of(bound, ROWS)
+        grain = Grain.of(bound, self.rows)
         bound = self.bound(family, 2 * family.posture, False, grain, enough)
         for branch in (2 * family.posture, 2 * family.posture + 1):
             if not self.branches[branch] or bound <= enough:
                 continue
             within = self.bound(family, branch, True, grain, enough)
             if within > enough:
-                depth = self.depth(family, branch, True, grain, max(enough, within / ROWS), within)
+                depth = self.depth(family, branch, True, grain, max(enough, within / self.rows), within)
                 if depth > enough:
                     yield Pair(depth, family, branch, within < bound)
 
@@ -188,7 +204,7 @@ class Viable:
         return found
 
     def bound(self, family: Family, branch: int, limited: bool, grain: Grain, enough: float = 0.0) -> float:
-        """How deep legs of a family get at most [m]; the tubes are left as made. See `kernels.viable.pair_bound`."""
+        """About how deep legs of a family get at most [m]; the tubes are left as made: `kernels.viable.pair_bound`."""
         return float(
             kernels.pair_bound(
                 self.arm, self.plane, branch, family.sense, self.held, limited, grain, family.low, family.high, enough,
@@ -197,7 +213,7 @@ class Viable:
         )  # fmt: skip
 
     def depth(self, family: Family, branch: int, limited: bool, grain: Grain, least: float, most: float) -> float:
-        """How deep legs of a family get [m], within the tubes that `bound` has left: `kernels.viable.pair_depth`."""
+        """About how deep legs of a family get [m], in the tubes that `bound` has left: `kernels.viable.pair_depth`."""
         return float(
             kernels.pair_depth(
                 self.arm, self.plane, branch, family.sense, self.held, limited, grain, least, most, CLOSE, self.room,
