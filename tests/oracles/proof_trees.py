@@ -32,6 +32,7 @@ def by_hand(claim, posture, spins, slopes, dead):
         claim=claim, spins=np.array([spins]), parents=np.array([-1]), postures=np.array([posture]),
         lists=np.array([[0, count]]), slopes=np.array(slopes), closed_of=np.zeros(count, dtype=int),
         closed=np.array(slopes), dead=np.array(dead), cuts=(np.zeros(0),),
+        terms=np.zeros((1, 0, 5)), of_travel=np.array([True]),
     )  # fmt: skip
 
 
@@ -45,6 +46,7 @@ def without_node(tree, number):
         tree, spins=tree.spins[keep], postures=tree.postures[keep], lists=tree.lists[keep],
         parents=np.where(parents < 0, -1, moved[parents]), closed_of=moved[tree.closed_of[rows]],
         closed=tree.closed[rows], dead=tree.dead[rows], cuts=tuple(tree.cuts[n] for n in np.flatnonzero(keep)),
+        terms=tree.terms[keep], of_travel=tree.of_travel[keep],
     )  # fmt: skip
 
 

@@ -12,8 +12,9 @@ import zerorev as zr
 from oracles import boxes, holes
 from zerorev import kinematics
 from zerorev.kernels import bound_boxes as kernels
-from zerorev.kernels import bound_legs, bound_tree
-from zerorev.kernels.intervals import LANES
+from zerorev.kernels import bound_legs, bound_nodes, bound_tree
+from zerorev.kernels.bound_multipliers import LEG, MOST_TERMS, TERM
+from zerorev.kernels.intervals import DERIVATIVE, LANES
 from zerorev.model.files import read_job
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
@@ -26,23 +27,26 @@ BUDGET = 100_000
 THESIS = (([0.5, 0.3, 0.8], 0.05), ([0.2, 0.4, 0.6], 0.02), ([0.2, 0.2, 1.0], 0.03))
 
 
-def rules_of(drilled, *, min_rate, most_cost=80.0):
+def rules_of(drilled, *, min_rate, most_cost=80.0, looks=8):
     robot, _, hole, settings = drilled.all
     lower, upper = model_limits(robot)
     weights = np.array(settings.reversal_weights)
     bound = settings.psi_bound or 0.0
-    return Rules(hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min())
+    return Rules(hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), looks)
 
 
-def examined(drilled, posture, psi, slopes, *, min_rate, groups=1):
+NO_TERMS = np.zeros((MOST_TERMS, TERM)), 1.0
+
+
+def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, looks=8):
     """What is known of one box, and its row; None where no leg of it may exist."""
     robot, tool, hole, _ = drilled.all
-    rules = rules_of(drilled, min_rate=min_rate)
+    rules = rules_of(drilled, min_rate=min_rate, looks=looks)
     tree = Search(robot.arm, kinematics.twist_plane(robot, tool, hole), rules, [posture], 1.0, 0.0)
     legs, known, _, _, room, _ = _room()
     legs[0, kernels.LOW], legs[0, kernels.HIGH] = slopes
     model = tree.models[posture]
-    left, _ = bound_legs.examine(model, rules, np.array(psi), legs, known, 1, groups, np.zeros(0), room)
+    left, _ = bound_legs.examine(model, rules, NO_TERMS, np.array(psi), legs, known, 1, groups, np.zeros(0), room)
     return (legs[0], known[0]) if left else None
 
 
@@ -59,8 +63,8 @@ def check_a_box(rng, drilled):
     """Legs drawn from a box against what is said of it; how many legs could be run."""
     posture = int(rng.integers(4))
     psi, slopes = random_box(rng, drilled)
-    min_rate = float(rng.choice([0.0, np.deg2rad(10.0)]))
-    said = examined(drilled, posture, psi, slopes, min_rate=min_rate, groups=int(rng.choice([1, 2, 4])))
+    min_rate, looks = float(rng.choice([0.0, np.deg2rad(10.0)])), int(rng.choice([4, 8]))
+    said = examined(drilled, posture, psi, slopes, min_rate=min_rate, groups=int(rng.choice([1, 2, 4])), looks=looks)
     legs = []
     for _ in range(6):
         psi_t, slope = rng.choice([*psi, rng.uniform(*psi)]), rng.choice([*slopes, rng.uniform(*slopes)])
@@ -93,6 +97,56 @@ def check_a_box(rng, drilled):
     return len(legs)
 
 
+def check_weights(rng, drilled):
+    """The travel less weighted conditions, of legs drawn from a box, against its bound; how many legs could be run."""
+    robot, tool, hole, _ = drilled.all
+    psi, slopes = random_box(rng, drilled)
+    posture, looks = int(rng.integers(4)), int(rng.choice([4, 8]))
+    rules = rules_of(drilled, min_rate=float(rng.choice([0.0, np.deg2rad(10.0)])), looks=looks)
+    terms, of_travel = np.zeros((MOST_TERMS, TERM)), float(rng.integers(2))
+    for term in terms[: rng.integers(1, MOST_TERMS + 1)]:
+        term[:] = rng.integers(2), rng.integers(6), rng.integers(looks), rng.choice([-1, 1]), rng.exponential() * 0.1
+    plane = kinematics.twist_plane(robot, tool, hole)
+    model = Search(robot.arm, plane, rules, [posture], 1.0, 0.0).models[posture]
+
+    def row_of(psi, slopes):
+        rows, known, _, _, room, _ = _room()
+        rows[0, kernels.LOW], rows[0, kernels.HIGH] = slopes
+        weights = terms, of_travel
+        left, _ = bound_legs.examine(model, rules, weights, np.array(psi), rows, known, 1, 1, np.zeros(0), room)
+        return rows[0].copy() if left else None
+
+    row = row_of(psi, slopes)
+    at = slice(LANES, LANES + looks)
+    smooth = model.unknown[DERIVATIVE, :looks] == 0.0
+    units = np.where(smooth, model.rows[model.denominator_middle, at], model.rows[model.denominator[1], at])
+    count = 0
+    for _ in range(6):
+        psi_t, slope = rng.uniform(*psi), rng.uniform(*slopes)
+        truth = boxes.leg(drilled, posture, psi_t, slope)
+        if truth is None or row is None or row_of((psi_t, psi_t), (slope, slope)) is None:
+            continue
+        dens = model.rows[model.denominator[1], at].copy()
+        away, aside = psi_t - np.mean(psi), abs(slope - np.mean(slopes)) / (0.5 * (slopes[1] - slopes[0]))
+        for leg in range(2):
+            least, low, high, by_slope = row[kernels.WEIGHED + 4 * leg : kernels.WEIGHED + 4 * leg + 4]
+            if least < -1e20:
+                continue
+            value = of_travel * truth["travel"]
+            for _, joint, look, way, multiplier in terms[terms[:, LEG] == leg]:
+                i, j = int(joint), int(look)
+                s = kernels.share(looks, 0, j) * hole.depth
+                theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, s, psi_t + slope * s)
+                branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)
+                rate = (theta_s + slope * theta_psi)[branch, i] * robot.arm.sign[i]
+                spare = way * rate - (rules.min_rate or -boxes.NIL)
+                value -= multiplier * spare * dens[i, j] / units[i, j] if multiplier else 0.0
+            bound = least + min(low * away, high * away) - by_slope * aside
+            assert value >= bound - 1e-6 * (1 + abs(bound))
+            count += 1
+    return count
+
+
 def within_limits(drilled, leg):
     """Whether some turns keep a leg within the limits, on either wrist flip."""
     lower, upper = model_limits(drilled.robot)
@@ -123,11 +177,13 @@ class TestABox:
                 legs, known, _, _, room, _ = _room()
                 legs[0, kernels.LOW] = legs[0, kernels.HIGH] = slope
                 model = tree.models[posture]
-                left, _ = bound_legs.examine(model, rules, np.array([psi, psi]), legs, known, 1, 1, np.zeros(0), room)
+                left, _ = bound_legs.examine(
+                    model, rules, NO_TERMS, np.array([psi, psi]), legs, known, 1, 1, np.zeros(0), room
+                )
                 truth = boxes.leg(drilled, posture, psi, slope)
                 if truth is None or not left:
                     continue
-                at = np.array([kernels.share(0, j) for j in range(kernels.LOOKS)])
+                at = np.array([kernels.share(8, 0, j) for j in range(8)])
                 for j, share in enumerate(at):
                     s = share * hole.depth
                     theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, s, psi + slope * s)
@@ -145,6 +201,12 @@ class TestABox:
         rng, legs = np.random.default_rng(1), 0
         for seed in range(60):
             legs += check_a_box(rng, holes.random_hole(seed, narrowed=bool(seed % 4 == 0)))
+        assert legs > 60
+
+    def test_weighs_conditions_as_its_legs_keep_them(self):
+        rng, legs = np.random.default_rng(5), 0
+        for seed in range(80):
+            legs += check_weights(rng, holes.random_hole(seed))
         assert legs > 60
 
     @pytest.mark.long
@@ -224,7 +286,7 @@ class TestSoundness:
             tree = Search(problem.robot.arm, problem.plane, rules, [0, 1, 2, 3], 4 * np.pi, 0.0)
             while tree.advance(6000) == bound_tree.CANDIDATE:
                 pass
-            value = bound_tree.BIG * problem.order.reversals(best) + best.score.travel
+            value = bound_nodes.BIG * problem.order.reversals(best) + best.score.travel
             assert tree.bound <= value * (1 + 1e-9)
             checked += 1
         assert checked > 30

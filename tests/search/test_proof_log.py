@@ -7,7 +7,7 @@ import pytest
 
 import zerorev as zr
 from oracles.proof_trees import THESIS
-from zerorev.kernels import bound_tree
+from zerorev.kernels import bound_nodes
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.exact import search
@@ -38,7 +38,7 @@ def test_it_is_whole(robot, tool):
     trees = []
     bound_depth(problem, 0.0264, 100_000, trees)
     tree = max(trees, key=lambda one: len(one.closed))
-    assert tree.claim.value == bound_tree.NOTHING
+    assert tree.claim.value == bound_nodes.NOTHING
     divided = 0
     for node in range(len(tree.spins)):
         closed = tree.closed[tree.closed_of == node]

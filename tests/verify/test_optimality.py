@@ -23,7 +23,7 @@ from flint import arb
 from zerorev.verify.certificate_piece import ball_arithmetic
 from zerorev.verify.optimality import check_tree
 from zerorev.verify.optimality_arm import arm_of, directions, rates_at, root_of
-from zerorev.verify.optimality_box import Box, Examiner
+from zerorev.verify.optimality_box import Box, Examiner, denominators
 from zerorev.verify.optimality_legs import MID_SHARES, Legs
 
 RATE = float(np.deg2rad(10.0))  # 0.01 deg/mm
@@ -116,14 +116,34 @@ def check_a_box(rng, drilled):
             if leg["turns"][i] == 0 and np.abs(leg["rates"][:, i]).min() >= max(min_rate, 1e-9) * (1 + 1e-6):
                 assert legs.may[i][0 if leg["first"][i] > 0 else 1]
         away = arb(psi_t - 0.5 * (box.low + box.high))
-        share = abs(slope - np.mean(slopes)) / max(slopes[1] - np.mean(slopes), 1e-300)
-        least = legs.least - abs(legs.by_psi * away) - legs.by_slope * share
+        aside = arb(slope - np.mean(slopes))
+        least = legs.least - abs(legs.by_psi * away) - abs(legs.by_slope * aside)
         assert leg["travel"] >= float(least.lower()) - 1e-6
         assert leg["travel"] >= float(legs.twist) - 1e-9
         for flip in range(2):
             if in_limits[flip]:
                 assert all(lo <= hi for lo, hi in legs.turns[flip])
+        for i, share in ((int(rng.integers(6)), float(rng.uniform())) for _ in range(3)):
+            with ball_arithmetic():
+                held = check_a_condition(legs, i, share, float(rng.choice([-1, 1])), psi_t, slope)
+            assert held is not False
     return run
+
+
+def check_a_condition(legs, i, share, way, psi_t, slope):
+    """Whether the enclosure of a condition holds that of a leg; None where there is none."""
+    condition, of, extent = legs.condition(i, share, way), legs.of, legs.extent
+    if condition is None:
+        return None
+    standoff = of.depth * arb(share)
+    psi = arb(psi_t) + standoff * arb(slope)
+    at = rates_at(of.arm, of.posture, standoff, (psi.cos(), psi.sin()), root_of, [])
+    least = of.threshold if of.threshold > 0 else -of.nil
+    truth = way * (at.outwards[i] + arb(slope) * at.spinning[i]) - least * denominators(at)[i]
+    unit = denominators(of.look(extent, share).centre)[i].mid()
+    middle, by_psi, by_slope = condition
+    said = middle + by_psi * (arb(psi_t) - extent.psi) + by_slope * (arb(slope) - extent.slope)
+    return said.overlaps(truth / unit)
 
 
 class TestABox:

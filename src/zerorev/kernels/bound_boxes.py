@@ -13,11 +13,15 @@ from zerorev.kernels._jit import kernel
 from zerorev.kernels.field import cos_sin
 from zerorev.kernels.intervals import LANES, cos_sin_over
 
-LOOKS = 8  # stand-offs of one look
-BOXES = LANES // LOOKS
+LOOKS = 8  # stand-offs of one look, at the most: `rules.looks` says how many
 
-# columns of a box of legs; STRETCH: how much of the depth its stand-offs are spread over
-LOW, HIGH, LEAST, BY_PSI_LOW, BY_PSI_HIGH, BY_SLOPE, TWIST, VALUE_OF, STRETCH, COLUMNS = range(10)
+# columns of a box of legs; STRETCH: how much of the depth its stand-offs are spread over; ALONG_SLOPE: derivative of
+# the travel by the slope, about
+(LOW, HIGH, LEAST, BY_PSI_LOW, BY_PSI_HIGH, BY_SLOPE, TWIST, VALUE_OF, STRETCH, ALONG_SLOPE,
+ # the travel less the weighted conditions, for either leg of a motion: by LEAST, BY_PSI_LOW, BY_PSI_HIGH, BY_SLOPE
+ WEIGHED) = range(11)  # fmt: skip
+PER_LEG = 4
+COLUMNS = WEIGHED + 2 * PER_LEG
 # what is known of its joints: least turns if it leaves the target forwards, or backwards; whether it may keep the
 # threshold forwards, or backwards; turns that fit the limits, on either wrist flip
 FORTH, BACK, MAY_FORTH, MAY_BACK, FITS, FITS_FLIPPED, KNOWN = range(7)
@@ -32,14 +36,14 @@ _COS, _SIN, _COS_C, _SIN_C, _STANDOFF, _SLOPE, _SLOPE_C, _HALF_PSI, _HALF_SLOPE,
 
 
 @kernel
-def share(group, look):  # type: ignore[no-untyped-def]
+def share(looks, group, look):  # type: ignore[no-untyped-def]
     """Where on a leg, as a share of its length, the stand-offs of a group lie: Chebyshev's, then finer and finer."""
     if group == 0:
-        return 0.5 * (1.0 - np.cos(np.pi * look / (LOOKS - 1)))
+        return 0.5 * (1.0 - np.cos(np.pi * look / (looks - 1)))
     if group == 1:
-        return 0.5 * (1.0 - np.cos(np.pi * (look + 0.5) / LOOKS))
+        return 0.5 * (1.0 - np.cos(np.pi * (look + 0.5) / looks))
     phase = (0.25, 0.75, 0.125, 0.625, 0.375, 0.875)[group - 2]
-    return (look + phase) / LOOKS
+    return (look + phase) / looks
 
 
 @kernel
@@ -54,21 +58,21 @@ def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, sp
         psi: interval of spins at the target, shape (2,).
         boxes: shape (N, COLUMNS).
         first: of the boxes.
-        count: of the boxes, at most BOXES.
-        standoffs: shape (LOOKS,) [m].
+        count: of the boxes, at most LANES // looks.
+        standoffs: shape (looks,) [m].
         spread: whether each box has them drawn in by its STRETCH.
         low: room, shape (LANES,).
         high: room, shape (LANES,).
     """
-    middle = 0.5 * (psi[0] + psi[1])
+    middle, looks = 0.5 * (psi[0] + psi[1]), standoffs.shape[0]
     half_psi = max(psi[1] - middle, middle - psi[0])
     for lane in range(LANES):
-        box, look = first + min(lane // LOOKS, count - 1), lane % LOOKS
+        box, look = first + min(lane // looks, count - 1), lane % looks
         a, b = boxes[box, LOW], boxes[box, HIGH]
         stretch = boxes[box, STRETCH] if spread else 1.0
         s = t = standoffs[look] * stretch
         if sweeping:
-            t = standoffs[min(look + 1, LOOKS - 1)] * stretch
+            t = standoffs[min(look + 1, looks - 1)] * stretch
         low[lane] = psi[0] + min(min(s * a, t * a), min(s * b, t * b)) - EDGE
         high[lane] = psi[1] + max(max(s * a, t * a), max(s * b, t * b)) + EDGE
         _fill(rows, inputs[_STANDOFF], lane, s, t)

@@ -13,7 +13,6 @@ from zerorev.kernels._jit import kernel
 from zerorev.kernels.bound_boxes import (
     ALL_TURNS,
     BACK,
-    BOXES,
     BY_PSI_HIGH,
     BY_PSI_LOW,
     BY_SLOPE,
@@ -25,7 +24,6 @@ from zerorev.kernels.bound_boxes import (
     HIGH,
     KNOWN,
     LEAST,
-    LOOKS,
     LOW,
     MAY_BACK,
     MAY_FORTH,
@@ -45,12 +43,13 @@ FIRST_TURN = 1.5 * np.pi  # [rad] of twist, to which the stand-offs of steeper l
 
 
 @kernel
-def examine(formulas, rules, psi, legs, known, count, groups, cuts, room):  # type: ignore[no-untyped-def]
+def examine(formulas, rules, weights, psi, legs, known, count, groups, cuts, room):  # type: ignore[no-untyped-def]
     """Examine boxes of legs, and close the ranks of those that are left after each group of stand-offs.
 
     Args:
         formulas: of the posture.
         rules: what is asked.
+        weights: terms and whether they are added to the travel, see `bound_multipliers.weigh`.
         psi: interval of spins at the target, shape (2,).
         legs: in and out, boxes, shape (N, COLUMNS).
         known: out, shape (N, KNOWN, 6).
@@ -60,29 +59,32 @@ def examine(formulas, rules, psi, legs, known, count, groups, cuts, room):  # ty
         room: whether a box may hold a leg, shape (N,), and two rows, each of shape (LANES,).
 
     Returns:
-        how many boxes are left, and how many looks that were, each at LOOKS stand-offs of one box.
+        how many boxes are left, and how many looks that were, each at `rules.looks` stand-offs of one box.
     """
     alive, low, high = room
     for n in range(count):
         alive[n] = _begin(rules, psi, legs[n], known[n])
     count, looks = _closed(legs, known, count, alive), 0
-    standoffs, swept = np.empty(LOOKS), np.empty((6, LOOKS))
-    more = (cuts.shape[0] + LOOKS - 1) // LOOKS
+    looks_of, boxes = rules.looks, LANES // rules.looks
+    standoffs, swept = np.empty(looks_of), np.empty((6, looks_of))
+    more = (cuts.shape[0] + looks_of - 1) // looks_of
     for group in range(groups + more):
-        for j in range(LOOKS):
+        for j in range(looks_of):
             if group < groups:
-                standoffs[j] = rules.depth * share(group, j)
+                standoffs[j] = rules.depth * share(looks_of, group, j)
             else:
-                standoffs[j] = rules.depth * cuts[min(LOOKS * (group - groups) + j, cuts.shape[0] - 1)]
-        for first in range(0, count, BOXES):
-            some = min(BOXES, count - first)
+                standoffs[j] = rules.depth * cuts[min(looks_of * (group - groups) + j, cuts.shape[0] - 1)]
+        for first in range(0, count, boxes):
+            some = min(boxes, count - first)
             _run(formulas, group == 0, rules, psi, legs, first, some, standoffs, group < groups, low, high)
             for box in range(some):
                 n = first + box
                 alive[n] = judge_signs(formulas, group == 0, rules, box, group < groups, known[n])
                 alive[n] = alive[n] and _least_cost(rules, known[n]) <= rules.most_cost + 1e-9
             if group == 0:
-                examine_travel(formulas, rules, psi, legs, known, first, some, standoffs, alive, swept, low, high)
+                examine_travel(
+                    formulas, rules, weights, psi, legs, known, first, some, standoffs, alive, swept, low, high
+                )
         looks += count
         count = _closed(legs, known, count, alive)
         if count == 0:
@@ -157,16 +159,16 @@ def judge_signs(formulas, first_look, rules, box, ordered, known):  # type: igno
     Returns:
         whether a leg of the box may exist.
     """
-    rows, unknown, first = formulas.rows, formulas.unknown, box * LOOKS
+    rows, unknown, first = formulas.rows, formulas.unknown, box * rules.looks
     tape = 1 if first_look else 0
-    for lane in range(first, first + LOOKS):
+    for lane in range(first, first + rules.looks):
         if unknown[OUT_OF_REACH, lane] != 0.0:
             return False
     for i in range(6):
         rate, den = formulas.rate[tape, i], formulas.denominator[tape, i]
         plus, minus = formulas.plus[tape, i], formulas.minus[tape, i]
         start = changes = last = target = 0
-        for look in range(LOOKS):
+        for look in range(rules.looks):
             lane = first + look
             if unknown[VALUE, lane] != 0.0:
                 continue

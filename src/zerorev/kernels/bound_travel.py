@@ -9,6 +9,7 @@ import numpy as np
 
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.bound_boxes import (
+    ALONG_SLOPE,
     BY_PSI_HIGH,
     BY_PSI_LOW,
     BY_SLOPE,
@@ -17,7 +18,6 @@ from zerorev.kernels.bound_boxes import (
     FITS_FLIPPED,
     HIGH,
     LEAST,
-    LOOKS,
     LOW,
     MAY_BACK,
     MAY_FORTH,
@@ -26,6 +26,7 @@ from zerorev.kernels.bound_boxes import (
     clear,
     place,
 )  # fmt: skip
+from zerorev.kernels.bound_multipliers import weigh
 from zerorev.kernels.intervals import LANES, UNKNOWN, VALUE, run
 
 _TURN = 2.0 * np.pi
@@ -38,14 +39,14 @@ def wrapped(angle):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def examine_travel(formulas, rules, psi, legs, known, first, count, standoffs, alive, swept, low, high):  # type: ignore[no-untyped-def]
+def examine_travel(formulas, rules, weights, psi, legs, known, first, count, standoffs, alive, swept, low, high):  # type: ignore[no-untyped-def]
     """Judge the travel of the boxes whose tape `angles` was run."""
     some = False
     for n in range(first, first + count):
         some = some or alive[n]
     if not some:
         return
-    rows, unknown, at = formulas.sweep_rows, formulas.sweep_unknown, np.empty(LOOKS)
+    rows, unknown, at = formulas.sweep_rows, formulas.sweep_unknown, np.empty(rules.looks)
     clear(unknown)
     place(rows, formulas.inputs[2], True, rules, psi, legs, first, count, standoffs, True, low, high)
     run(formulas.sweep, formulas.constants[formulas.starts[2] :], rows, unknown)
@@ -53,45 +54,47 @@ def examine_travel(formulas, rules, psi, legs, known, first, count, standoffs, a
         n = first + box
         if not alive[n]:
             continue
-        for j in range(LOOKS):
+        for j in range(rules.looks):
             at[j] = standoffs[j] * legs[n, STRETCH]
         for i in range(6):
             row = formulas.swept[i]
-            for j in range(LOOKS - 1):
-                lane = box * LOOKS + j
+            for j in range(rules.looks - 1):
+                lane = box * rules.looks + j
                 most = max(abs(rows[row, lane]), abs(rows[row, LANES + lane]))
                 swept[i, j] = UNKNOWN if unknown[VALUE, lane] != 0.0 else most * (at[j + 1] - at[j])
-        alive[n] = judge_travel(formulas, rules, psi, box, at, legs[n], known[n], swept)
+        alive[n] = judge_travel(formulas, rules, weights, psi, box, at, legs[n], known[n], swept)
 
 
 @kernel
-def judge_travel(formulas, rules, psi, box, standoffs, legs, known, swept):  # type: ignore[no-untyped-def]
+def judge_travel(formulas, rules, weights, psi, box, standoffs, legs, known, swept):  # type: ignore[no-untyped-def]
     """What the angles say of a box: the least travel, how it varies over the box, and the turns that fit the limits.
 
     Args:
         formulas: whose tape `angles` was run on stand-offs from the target outwards.
         rules: whose limits count.
+        weights: terms and whether they are added to the travel, see `bound_multipliers.weigh`.
         psi: interval of spins at the target, shape (2,).
         box: which one, of those that were placed.
-        standoffs: shape (LOOKS,) [m].
+        standoffs: shape (looks,) [m].
         legs: in and out, row of the box, shape (COLUMNS,).
         known: in and out, shape (KNOWN, 6).
-        swept: greatest angle that a joint may move from each stand-off to the next [rad], shape (6, LOOKS).
+        swept: greatest angle that a joint may move from each stand-off to the next [rad], shape (6, looks).
 
     Returns:
         whether a leg of the box may exist.
     """
-    rows, first = formulas.rows, box * LOOKS
+    looks, (terms, of_travel) = rules.looks, weights
+    rows, first = formulas.rows, box * looks
     middle = 0.5 * (psi[0] + psi[1])
     half_psi = max(psi[1] - middle, middle - psi[0]) + EDGE
     slope = 0.5 * (legs[LOW] + legs[HIGH])
     half_slope = max(legs[HIGH] - slope, slope - legs[LOW]) * (1.0 + 1e-12)
-    at, slack, radius = np.empty(LOOKS), np.empty(LOOKS), np.empty(LOOKS)
-    by_low, by_high, share_of, along = np.empty(LOOKS), np.empty(LOOKS), np.empty(LOOKS), np.empty(LOOKS)
+    at, slack, radius = np.empty(looks), np.empty(looks), np.empty(looks)
+    by_low, by_high, share_of, along = np.empty(looks), np.empty(looks), np.empty(looks), np.empty(looks)
     least = by_psi_low = by_psi_high = by_slope_low = by_slope_high = 0.0
     for i in range(6):
         bounded = True
-        for j in range(LOOKS):
+        for j in range(looks):
             lane = first + j
             share_of[j] = 0.0
             turn_low, turn_high = rows[formulas.turning[i], lane], rows[formulas.turning[i], LANES + lane]
@@ -120,7 +123,7 @@ def judge_travel(formulas, rules, psi, box, standoffs, legs, known, swept):  # t
             sign = known[MAY_FORTH, i] - known[MAY_BACK, i]
         along[0] = wrapped(at[0])
         resolved, sum_of = True, 0.0
-        for j in range(1, LOOKS):
+        for j in range(1, looks):
             step = wrapped(at[j] - at[j - 1])
             by_psi = max(abs(by_low[j] - by_high[j - 1]), abs(by_high[j] - by_low[j - 1]))
             s, t = standoffs[j - 1], standoffs[j]
@@ -144,7 +147,7 @@ def judge_travel(formulas, rules, psi, box, standoffs, legs, known, swept):  # t
                 sum_of += abs(step)
                 share_of[j] += direction
                 share_of[j - 1] -= direction
-        for j in range(LOOKS):
+        for j in range(looks):
             k = share_of[j]
             sum_of -= abs(k) * slack[j]
             low, high = (k * by_low[j], k * by_high[j]) if k > 0.0 else (k * by_high[j], k * by_low[j])
@@ -157,6 +160,8 @@ def judge_travel(formulas, rules, psi, box, standoffs, legs, known, swept):  # t
             return False
     legs[LEAST], legs[BY_PSI_LOW], legs[BY_PSI_HIGH] = least, by_psi_low - PAD, by_psi_high + PAD
     legs[BY_SLOPE] = max(abs(by_slope_low), abs(by_slope_high)) * half_slope * (1.0 + 1e-12)
+    legs[ALONG_SLOPE] = 0.5 * (by_slope_low + by_slope_high)
+    weigh(formulas, rules, terms, of_travel, box, standoffs, (by_slope_low, by_slope_high), half_slope, legs)
     fits = flipped = True
     for i in range(6):
         fits = fits and known[FITS, i] != 0
@@ -171,14 +176,14 @@ def _fits(rules, i, at, along, radius, resolved, known):  # type: ignore[no-unty
         bits = 0
         for k in range(-3, 4):
             fits = True
-            for j in range(LOOKS if resolved else 1):
+            for j in range(at.shape[0] if resolved else 1):
                 angle = flipped(i, flip, along[j]) + _TURN * k
                 if angle + radius[j] < rules.lower[i] - PAD or angle - radius[j] > rules.upper[i] + PAD:
                     fits = False
                     break
             if fits:
                 bits |= 1 << (k + 3)
-        for j in range(LOOKS):  # each stand-off by itself, with any turn
+        for j in range(at.shape[0]):  # each stand-off by itself, with any turn
             angle = flipped(i, flip, at[j])
             k = np.ceil((rules.lower[i] - PAD - angle - radius[j]) / _TURN)
             if angle - radius[j] + _TURN * k > rules.upper[i] + PAD:

@@ -61,6 +61,9 @@ class ProofTree:
         dead: whether that is because no leg of it keeps the rules; else because no two legs, one of it and one of what
             is not dead, have a lesser value, shape (C,).
         cuts: stand-offs that were found to matter, as shares of the depth, one array per node.
+        terms: conditions on rates that pairs of a node are weighed with: leg (0, 1), joint (0..5), stand-off as a share
+            of the depth, direction of the joint on that leg (+1, -1), multiplier [m], 0: no term; shape (N, T, 5).
+        of_travel: whether the terms are added to the travel; else they contradict each other, shape (N,).
     """
 
     claim: Claim
@@ -73,11 +76,14 @@ class ProofTree:
     closed: Array
     dead: npt.NDArray[np.bool_]
     cuts: tuple[Array, ...]
+    terms: Array
+    of_travel: npt.NDArray[np.bool_]
 
     def resized(self, factor: float) -> ProofTree:
         """The same where all lengths are multiplied by a factor; by a power of two no digit changes."""
         claim = replace(self.claim, depth=self.claim.depth * factor, min_rate=self.claim.min_rate / factor)
-        return replace(self, claim=claim, slopes=self.slopes / factor, closed=self.closed / factor)
+        terms = self.terms * [1.0, 1.0, 1.0, 1.0, factor]
+        return replace(self, claim=claim, slopes=self.slopes / factor, closed=self.closed / factor, terms=terms)
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,13 @@ from flint import arb
 
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
-from zerorev.model.proof_tree import PER_REVERSAL, ProofCheck, ProofTree
+from zerorev.model.proof_tree import ProofCheck, ProofTree
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate_piece import ball_arithmetic
-from zerorev.verify.optimality_box import AROUND, SIX, Box, Examiner
+from zerorev.verify.optimality_box import Box, Examiner
 from zerorev.verify.optimality_legs import MID_SHARES, Legs
-from zerorev.verify.optimality_travel import Turns
+from zerorev.verify.optimality_pairs import Weights, least_value, weights_of
 from zerorev.verify.optimality_tree import Node, fits, holes_in, most_reversals, node_of
 
 __all__ = ["check_tree"]
@@ -181,10 +181,11 @@ class _Check:
     def pair(self, number: int, box: Box, with_box: Box) -> _Doubt | None:
         """Whether any two legs of two boxes reach the value; None where that is so."""
         rest, parts = [(box, with_box)], 0
+        weights = weights_of(self.tree.terms[number], bool(self.tree.of_travel[number]))
         while rest:
             p, r = rest.pop()
             parts += 1
-            if self.reached(self.kept(number, p), self.kept(number, r)):
+            if self.reached(self.kept(number, p), self.kept(number, r), weights):
                 continue
             wide = max((p.high - p.low), (p.most - p.least) * self.depth, (r.most - r.least) * self.depth)
             if wide < NARROWEST or _now_and_then(parts):
@@ -231,10 +232,10 @@ class _Check:
             pass
         return legs
 
-    def reached(self, one: Legs, other: Legs) -> bool:
+    def reached(self, one: Legs, other: Legs, weights: Weights) -> bool:
         """Whether any two legs of two boxes surely reach the value; the boxes are examined as far as that takes."""
         while True:
-            value = self.least_value(one, other)
+            value = least_value(one, other, weights)
             if value is None or value >= self.value:
                 return True
             if not (one.look_closer() | other.look_closer()):
@@ -242,21 +243,8 @@ class _Check:
 
     def below(self, one: Legs, other: Legs) -> bool:
         """Whether the least value of two legs is surely below the one that is claimed."""
-        value = self.least_value(one, other)
+        value = least_value(one, other, Weights())
         return value is not None and bool(value < self.value)
-
-    def least_value(self, one: Legs, other: Legs) -> arb | None:
-        """A lower bound of what any two legs of two boxes cost and travel; None where no two keep the rules."""
-        if one.dead is not None or other.dead is not None:
-            return None
-        of, box = one.of, one.box
-        cost = of.cost(_turns(one, other))
-        if cost > of.claim.most_cost + 1e-9 or not any(_meet(one.turns[flip], other.turns[flip]) for flip in of.flips):
-            return None
-        half = (arb(box.high) - arb(box.low)) / 2 + AROUND
-        varies = (one.by_psi + other.by_psi).abs_upper() * half + one.by_slope + other.by_slope
-        travel = (one.least + other.least - varies).max(one.twist + other.twist)
-        return travel + arb(PER_REVERSAL) * arb(cost)
 
     def cut(self, box: Box) -> list[Box] | None:
         """Halves of a box; None where it is too narrow."""
@@ -277,22 +265,6 @@ def _now_and_then(parts: int) -> bool:
 def _halves(box: Box) -> list[Box]:
     middle = 0.5 * (box.least + box.most)
     return [box._replace(most=middle), box._replace(least=middle)]
-
-
-def _turns(one: Legs, other: Legs) -> list[int]:
-    """Least reversals of each joint on a motion of two legs."""
-    turns = []
-    for i in SIX:
-        across = min(one.forth[i] + other.back[i], one.back[i] + other.forth[i])
-        n = min(across, 1 + min(one.forth[i] + other.forth[i], one.back[i] + other.back[i]))
-        (forth, back), (forth_2, back_2) = one.may[i], other.may[i]
-        turns.append(n or int(not ((forth and back_2) or (back and forth_2))))
-    return turns
-
-
-def _meet(one: Turns, other: Turns) -> bool:
-    """Whether each joint has a turn that both legs allow."""
-    return all(max(a[0], b[0]) <= min(a[1], b[1]) for a, b in zip(one, other, strict=True))
 
 
 def _place(box: Box) -> str:

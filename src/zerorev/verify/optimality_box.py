@@ -18,7 +18,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.optimality_arm import Rates, arm_of, lifted, rates_at, root_of
 
-__all__ = ["AROUND", "SIX", "Box", "Examiner", "Extent", "Look", "denominators"]
+__all__ = ["AROUND", "SIX", "Box", "Examiner", "Extent", "Look", "denominators", "smooth_denominators"]
 
 AROUND = 2.0**-50  # [rad] added to either end of an interval of spins, so that 2 pi is closed
 SIX = range(6)
@@ -148,6 +148,12 @@ def denominators(at: Rates[arb]) -> tuple[arb, ...]:
     """What the rates of the six joints are multiplied by."""
     part, full = at.height * root_of(at.sine_2), at.height * at.sine_2
     return arb(1), at.height, at.height, full, part, full
+
+
+def smooth_denominators(at: Rates[arb_series]) -> tuple[arb_series, ...]:
+    """The same with derivatives by the spin; ValueError where one of them may have none."""
+    part, full = at.height * _smooth_root(at.sine_2), at.height * at.sine_2
+    return arb_series([1, 0]), at.height, at.height, full, part, full
 
 
 def _turned(psi: arb) -> tuple[arb, arb]:

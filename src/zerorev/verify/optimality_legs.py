@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from flint import arb
 
-from zerorev.verify.optimality_box import SIX, Box, Examiner, Extent, Look, denominators
+from zerorev.verify.optimality_box import SIX, Box, Examiner, Extent, Look, denominators, smooth_denominators
 from zerorev.verify.optimality_travel import ANY_TURN, Turns, travel_of
 
 __all__ = ["MID_SHARES", "Legs"]
@@ -41,7 +41,7 @@ class Legs:
         may: whether each joint may keep its direction and the threshold all along, forwards and backwards.
         least: no leg at the centre of the box travels less [rad]; likewise:
         by_psi: derivative of a lower bound of the travel by the spin.
-        by_slope: what that bound varies with the slope over the box [rad].
+        by_slope: likewise by the slope [m].
         turns: see `optimality_travel.Travel`.
         twist: no leg turns the tool less [rad], and none travels less than that.
     """
@@ -53,6 +53,7 @@ class Legs:
         self._steps += [partial(self._examine, rest[k : k + CHUNK]) for k in range(0, len(rest), CHUNK)]
         self._looks: dict[float, Look] = {}
         self._signs: dict[float, list[int]] = {}
+        self._conditions: dict[tuple[int, float, float], tuple[arb, arb, arb]] = {}
         self._met = [0] * 6  # signs that are met: 1, 2, or both
         self.dead: str | None = None
         self.forth: tuple[int, ...] = (0,) * 6
@@ -70,6 +71,35 @@ class Legs:
             return False
         self.dead = self._steps.pop(0)()
         return True
+
+    def condition(self, i: int, share: float, direction: float) -> tuple[arb, arb, arb] | None:
+        """What a joint's rate has above the least that it must have in a direction, at a stand-off.
+
+        Returns:
+            enclosures of it, in units of the rate at the centre, at the centre [rad/m], and of its derivatives by the
+            spin [1/m] and by the slope; None where they may have no bound.
+        """
+        found = self._conditions.get((i, share, direction))
+        if found is not None:
+            return found
+        of, extent = self.of, self.extent
+        look = self._looks.get(share) or of.look(extent, share)
+        series, centre, whole = look.series, look.centre, look.whole
+        if series is None or centre is None or whole is None:
+            return None
+        try:
+            den = smooth_denominators(series)[i]
+        except ValueError:
+            return None
+        at_centre, least = denominators(centre)[i], of.threshold if of.threshold > 0 else -of.nil
+        unit = at_centre.mid()
+        if not unit > 0:
+            return None
+        middle = direction * (centre.outwards[i] + extent.slope * centre.spinning[i]) - least * at_centre
+        by_psi = direction * (series.outwards[i][1] + extent.slopes * series.spinning[i][1]) - least * den[1]
+        by_slope = direction * whole.spinning[i] + look.standoff * by_psi
+        found = self._conditions[i, share, direction] = middle / unit, by_psi / unit, by_slope / unit
+        return found
 
     def _begin(self) -> str | None:
         """The bound on the spin, and the signs at the first stand-offs; why the box is dead, or None."""

@@ -28,7 +28,7 @@ class Travel(NamedTuple):
     Attributes:
         least: no leg at the centre travels less [rad].
         by_psi: derivative of a lower bound of the travel by the spin.
-        by_slope: what that bound varies with the slope over the box [rad].
+        by_slope: likewise by the slope [m].
         turns: least and greatest multiple of a turn with which each joint may lie within its limits, counted from where
             it is at the centre, at the target; on either flip.
     """
@@ -88,7 +88,7 @@ def travel_of(of: Examiner, extent: Extent, looks: Sequence[Look]) -> Travel:
                 by_slope += factor * standoff * angle.by_psi
         for flip in range(2):
             turns[flip].append(_fitting(of.limits[i], i, flip, angles, followed))
-    return Travel(least, by_psi, (by_slope * extent.d_slope).abs_upper(), (tuple(turns[0]), tuple(turns[1])))
+    return Travel(least, by_psi, by_slope, (tuple(turns[0]), tuple(turns[1])))
 
 
 def _fitting(

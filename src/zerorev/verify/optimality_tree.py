@@ -135,15 +135,18 @@ def _gaps(whole: Array, parts: Array, slack: float = 0.0) -> bool:
 def fits(tree: ProofTree) -> bool:
     """Whether the arrays of a tree fit each other: the shapes, the numbers of nodes, intervals that are none."""
     nodes, slopes = len(tree.spins), len(tree.slopes)
-    alike = all(len(part) == nodes for part in (tree.parents, tree.postures, tree.lists, tree.cuts))
+    alike = all(
+        len(part) == nodes for part in (tree.parents, tree.postures, tree.lists, tree.cuts, tree.terms, tree.of_travel)
+    )
     if not nodes or not alike or not len(tree.closed) == len(tree.closed_of) == len(tree.dead):
         return False
     ends = tree.lists.sum(axis=1)
     before = (tree.parents < np.arange(nodes)).all() and (tree.parents >= -1).all()
+    shaped = tree.terms.ndim == 3 and tree.terms.shape[2] == 5
     inside = (tree.lists >= 0).all() and (ends <= slopes).all()
     known = ((tree.closed_of >= 0) & (tree.closed_of < nodes)).all()
     finite = all(np.isfinite(part).all() for part in (tree.spins, tree.slopes, tree.closed))
     rising = all((part[:, 0] <= part[:, 1]).all() for part in (tree.spins, tree.slopes, tree.closed))
     claim = tree.claim
     sound = 0 < claim.depth < np.inf and claim.min_rate >= 0 and claim.psi_bound >= 0 and claim.value <= NO_VALUE
-    return bool(before and inside and known and finite and rising and sound)
+    return bool(before and shaped and inside and known and finite and rising and sound)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from zerorev.kernels import bound_tree
+import numpy as np
+
+from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes
 from zerorev.model.proof_tree import Claim, ProofTree
 from zerorev.search.bounds.tree import Search
 
@@ -17,10 +19,13 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
         branch: the only one that was searched, or None.
     """
     tree, rules = search.tree, search.rules
-    nodes, closed = int(tree.counts[bound_tree.NODES]), int(tree.counts[bound_tree.LOGGED])
+    nodes, closed = int(tree.counts[bound_nodes.NODES]), int(tree.counts[bound_nodes.LOGGED])
     assert closed <= len(tree.closed)
     lists, rows = tree.lists[:nodes], tree.closed[:closed]
-    slopes = slice(bound_tree.CLOSED_LOW, bound_tree.CLOSED_HIGH + 1)
+    slopes = slice(bound_nodes.CLOSED_LOW, bound_nodes.CLOSED_HIGH + 1)
+    terms = tree.terms[:nodes].copy()
+    at = [bound_boxes.share(rules.looks, 0, look) for look in range(rules.looks)]
+    terms[..., bound_multipliers.LOOK] = np.array(at)[terms[..., bound_multipliers.LOOK].astype(int)]
     return ProofTree(
         claim=Claim(
             depth=rules.depth,
@@ -32,12 +37,14 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
             value=search.bound,
         ),
         spins=tree.nodes[:nodes, :2].copy(),
-        parents=lists[:, bound_tree.PARENT].copy(),
-        postures=lists[:, bound_tree.POSTURE].copy(),
-        lists=lists[:, [bound_tree.START, bound_tree.COUNT]],
-        slopes=tree.slopes[: int(tree.counts[bound_tree.SLOPES])].copy(),
-        closed_of=rows[:, bound_tree.CLOSED_NODE].astype(int),
+        parents=lists[:, bound_nodes.PARENT].copy(),
+        postures=lists[:, bound_nodes.POSTURE].copy(),
+        lists=lists[:, [bound_nodes.START, bound_nodes.COUNT]],
+        slopes=tree.slopes[: int(tree.counts[bound_nodes.SLOPES])].copy(),
+        closed_of=rows[:, bound_nodes.CLOSED_NODE].astype(int),
         closed=rows[:, slopes].copy(),
-        dead=rows[:, bound_tree.CLOSED_DEAD] == 1.0,
-        cuts=tuple(tree.cuts[n, : lists[n, bound_tree.CUTS]].copy() for n in range(nodes)),
+        dead=rows[:, bound_nodes.CLOSED_DEAD] == 1.0,
+        terms=terms,
+        of_travel=tree.nodes[:nodes, bound_nodes.NODE_OF_TRAVEL] == 1.0,
+        cuts=tuple(tree.cuts[n, : lists[n, bound_nodes.CUTS]].copy() for n in range(nodes)),
     )

@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from zerorev.kernels import bound_tree
+from zerorev.kernels import bound_nodes, bound_tree
 from zerorev.kinematics import joint_rates
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Optimality
@@ -37,6 +37,8 @@ SAME_RATE = 2e-6  # relative: a threshold missed by so little is kept (`evaluati
 MOST_REVERSALS = 12.0  # of all joints: what a hole without any motion is searched up to
 TURNS_OF_LEG = 257  # points at which a motion that failed is examined
 MOST_FRESH_CUTS = 8
+SHORT = 0.03  # of the arm's size: on shorter strokes joints hardly change their rates
+LOOKS = 4, 8  # at a box at first
 SLIDING_LOOKS = 33  # points of a leg
 ENOUGH_LACK = 1e-6  # [rad/m]
 MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
@@ -174,7 +176,7 @@ class Prover:
                     break
         self._note(search)
         cost = most if best is None else self._cost(best)
-        bound = search.bound - bound_tree.BIG * cost * self.scale
+        bound = search.bound - bound_nodes.BIG * cost * self.scale
         return _Least(best, bound, reason in (bound_tree.EMPTY, bound_tree.PROVEN))
 
     def _fewest(self, best: Candidate | None) -> tuple[Candidate | None, float, bool]:
@@ -218,6 +220,8 @@ class Prover:
             # the tapes have sin(q5) >= 0; where joint 5 is counted the other way, A5 < 0 is that one
             flips[:] = np.arange(2) == (branch % 2 if problem.robot.arm.sign[4] > 0 else 1 - branch % 2)
         weights = problem.weights * self.scale
+        # where joints reverse, more looks show better what they travel
+        (few, many), straight_on = LOOKS, most < problem.weights.min()
         rules = BoundRules(
             depth=problem.hole.depth,
             min_rate=min_rate,
@@ -228,6 +232,7 @@ class Prover:
             weights=weights,
             most_cost=most * self.scale,
             least_weight=float(weights.min()),
+            looks=few if straight_on and problem.hole.depth < SHORT * problem.robot.size else many,
         )
         # a leg travels at least its twist, and a joint that reverses n times at most n + 1 times its range
         ranges, reversals = upper - lower, most / max(float(problem.weights.min()), 1e-3)
@@ -252,16 +257,21 @@ class Prover:
     def _found(self, search: Search) -> Candidate | None:
         """The better of the motions on the two wrist flips that a candidate stands for; where it fails, it is cut."""
         psi, *slopes, posture = search.tree.candidate.tolist()
-        rough = search.tree.values[bound_tree.CANDIDATE_VALUE] >= bound_tree.NOTHING
+        rough = search.tree.values[bound_nodes.CANDIDATE_VALUE] >= bound_nodes.NOTHING
         problem = self.problem
         branches = [branch for branch in problem.branches if branch // 2 == int(posture)]
         found = problem.order.best(problem.found(branch, psi, (slopes[0], slopes[1])) for branch in branches)
         if found is not None and found.reversals == 0 and found.keeps_threshold:
             return descended(problem.order, found)
         if rough:  # where several conditions meet there is next to no room, which points miss
-            return self._slid(branches, psi, slopes)
-        value = np.inf if found is None else bound_tree.BIG * self._scaled(found) + found.score.travel
-        as_seen = value < search.tree.values[bound_tree.CANDIDATE_VALUE] * (1 + 1e-6)
+            search.cut(self._worst_places(int(posture), psi, slopes))
+            return (
+                self._slid(branches, psi, slopes)
+                if search.tree.counts[bound_nodes.TRIED] % bound_tree.SELDOM == 0
+                else None
+            )
+        value = np.inf if found is None else bound_nodes.BIG * self._scaled(found) + found.score.travel
+        as_seen = value < search.tree.values[bound_nodes.CANDIDATE_VALUE] * (1 + 1e-6)
         if found is None or not as_seen or not found.keeps_threshold:
             search.cut(self._worst_places(int(posture), psi, slopes))
         return found
@@ -314,7 +324,7 @@ class Prover:
 
     def _cost_bound(self, value: float) -> float:
         """The cost that a value stands for."""
-        return float(np.floor(value / bound_tree.BIG + 1e-9)) / self.scale
+        return float(np.floor(value / bound_nodes.BIG + 1e-9)) / self.scale
 
 
 def _cost_scale(weights: Array) -> float:

@@ -34,6 +34,7 @@ class Formulas(NamedTuple):
     """The tapes of one posture and the rows that they use; a NamedTuple, so that kernels take it whole.
 
     Attributes:
+        posture: 0..3.
         signs: the tape of rates and conditions, shape (T, 5).
         angles: the same with the angles, shape (T', 5).
         sweep: the tape of rates over a stretch of stand-offs, shape (T'', 5).
@@ -49,12 +50,18 @@ class Formulas(NamedTuple):
         denominator: of the rate.
         plus: of what the rate has above the threshold, times the denominator.
         minus: of what the opposite rate has above it.
-        middle: rows of the angles at the centre, of `angles`, shape (6,); likewise:
+        rate_middle: rows of the rate times its denominator at the centre, of `angles`, shape (6,); likewise:
+        rate_psi: of its derivative by the spin.
+        rate_slope: of that by the slope.
+        denominator_middle: of the denominator at the centre.
+        denominator_psi: of its derivative by the spin.
+        middle: of the angles at the centre.
         whole: of the angles anywhere.
         turning: of d theta / d psi.
         swept: rows of the rates, of `sweep`, shape (6,).
     """
 
+    posture: int
     signs: Indices
     angles: Indices
     sweep: Indices
@@ -69,6 +76,11 @@ class Formulas(NamedTuple):
     denominator: Indices
     plus: Indices
     minus: Indices
+    rate_middle: Indices
+    rate_psi: Indices
+    rate_slope: Indices
+    denominator_middle: Indices
+    denominator_psi: Indices
     middle: Indices
     whole: Indices
     turning: Indices
@@ -262,6 +274,10 @@ def _tape(posture: int, threshold: bool, angles: bool, zero: frozenset[str]) -> 
                 by_u = sign * by_slope if dleast is None else sign * by_slope - standoff * dleast
                 out[f"{name}{i}"] = enclosed(sign * natural - least, sign * middle - least_c, by, by_u)
         if angles:
+            still = 0.0 * den
+            out[f"rate_middle{i}"], out[f"denominator_middle{i}"] = middle, denc
+            out[f"rate_psi{i}"], out[f"rate_slope{i}"] = by_psi or still, by_slope
+            out[f"denominator_psi{i}"] = dden or still
             out[f"turning{i}"] = M.over(den)
             out[f"whole{i}"], out[f"middle{i}"] = (
                 cosine.arc(sine) for cosine, sine in (box.joints[i], centre.joints[i])
@@ -301,6 +317,7 @@ def formulas(arm: ArmGeometry, plane: TwistPlane, posture: int, *, threshold: bo
         return np.array([[tape.outputs.get(f"{name}{i}", -1) for i in range(6)] for tape in of], dtype=np.int64)
 
     return Formulas(
+        posture=posture,
         signs=signs.code,
         angles=angles.code,
         sweep=sweep.code,
@@ -315,6 +332,11 @@ def formulas(arm: ArmGeometry, plane: TwistPlane, posture: int, *, threshold: bo
         denominator=rows("denominator", [signs, angles]),
         plus=rows("plus", [signs, angles]),
         minus=rows("minus", [signs, angles]),
+        rate_middle=rows("rate_middle", [angles])[0],
+        rate_psi=rows("rate_psi", [angles])[0],
+        rate_slope=rows("rate_slope", [angles])[0],
+        denominator_middle=rows("denominator_middle", [angles])[0],
+        denominator_psi=rows("denominator_psi", [angles])[0],
         middle=rows("middle", [angles])[0],
         whole=rows("whole", [angles])[0],
         turning=rows("turning", [angles])[0],

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kernels import bound_boxes, bound_tree, intervals
+from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes, bound_tree, intervals
 from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry, Robot
@@ -18,6 +18,8 @@ __all__ = ["Rules", "Search", "model_limits"]
 SPINS, SLOPES = 32, 8  # intervals to begin with, of spins and of slopes within a turn either way
 FAR = 1.4 * np.pi  # [rad] of twist, of intervals beyond a turn: with the spins of a node less than a turn in all
 FIRST_ROOM = 4096
+ASPECT = 1.0  # [1/rad] times the travel: width of boxes in twist over that in spin, at the most 1
+LEAST_ASPECT = 0.01
 
 
 class Rules(NamedTuple):
@@ -33,6 +35,8 @@ class Rules(NamedTuple):
         weights: what a reversal of each joint costs, shape (6,).
         most_cost: what a motion may cost at the most.
         least_weight: of any joint.
+        looks: at how many stand-offs a box is examined at first: 4, or 8.
+        aspect: width of a box in twist as a share of its width in spin, to which slopes are halved.
     """
 
     depth: float
@@ -44,6 +48,8 @@ class Rules(NamedTuple):
     weights: Array
     most_cost: float
     least_weight: float
+    looks: int
+    aspect: float = 1.0
 
 
 class Tree(NamedTuple):
@@ -51,19 +57,21 @@ class Tree(NamedTuple):
 
     Attributes:
         heap: numbers of nodes, shape (N,).
-        nodes: interval of spins and value, shape (N, 3).
+        nodes: interval of spins, value, whether the terms are added to the travel (1) or refute (0), shape (N, 4).
+        terms: conditions with multipliers, see `kernels.bound_multipliers`, shape (N, MOST_TERMS, TERM).
         lists: posture, where its slopes start and how many they are, how many cuts, parent or -1, shape (N, 5).
         cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).
         closed: log of the boxes that are left out: node, interval of slopes, whether no leg of it may exist (1) or no
             pair with it is of interest (0), shape (C, 4); C = 0: none is kept.
-        counts: see `kernels.bound_tree`, shape (9,).
+        counts: see `kernels.bound_nodes`, shape (9,).
         values: likewise, shape (4,).
         candidate: spin at the target, two slopes, posture, shape (4,).
     """
 
     heap: npt.NDArray[np.int64]
     nodes: Array
+    terms: Array
     lists: npt.NDArray[np.int64]
     cuts: Array
     slopes: Array
@@ -102,34 +110,35 @@ class Search:
             formulas(arm, plane, posture, threshold=rules.min_rate > 0) for posture in range(4)
         )
         self.tree = _planted(rules, postures, twist, bound_tree.MOST_CLOSED if logged else 0)
-        self.tree.values[bound_tree.GAP] = gap
+        self.tree.values[bound_nodes.GAP] = gap
         self._work = _room()
 
     @property
     def looks(self) -> int:
         """Looks so far, each at 8 stand-offs of one box."""
-        return int(self.tree.counts[bound_tree.LOOKS_DONE])
+        return int(self.tree.counts[bound_nodes.LOOKS_DONE])
 
     @property
     def bound(self) -> float:
         """What no motion is better than: reversals x BIG + travel."""
         tree = self.tree
-        top = tree.nodes[tree.heap[0], bound_tree.NODE_VALUE] if tree.counts[bound_tree.HEAP] else bound_tree.NOTHING
-        return float(min(top, tree.values[bound_tree.LEFT], bound_tree.threshold(self.rules, tree)))
+        top = tree.nodes[tree.heap[0], bound_nodes.NODE_VALUE] if tree.counts[bound_nodes.HEAP] else bound_nodes.NOTHING
+        return float(min(top, tree.values[bound_nodes.LEFT], bound_nodes.threshold(self.rules, tree)))
 
     def improve(self, cost: float, travel: float) -> None:
         """Take note of a motion that is better than the best so far."""
-        self.rules = self.rules._replace(most_cost=min(cost, self.rules.most_cost))
-        self.tree.values[bound_tree.BEST] = bound_tree.BIG * cost + travel
+        aspect = min(1.0, max(ASPECT * travel, LEAST_ASPECT)) if travel > 0.0 else self.rules.aspect
+        self.rules = self.rules._replace(most_cost=min(cost, self.rules.most_cost), aspect=aspect)
+        self.tree.values[bound_nodes.BEST] = bound_nodes.BIG * cost + travel
 
     def cut(self, shares: Array) -> None:
         """Have more stand-offs examined in the two nodes that the last candidate came from."""
         tree = self.tree
-        for node in tree.counts[bound_tree.LAST_LEFT : bound_tree.LAST_RIGHT + 1]:
-            count = int(tree.lists[node, bound_tree.CUTS])
+        for node in tree.counts[bound_nodes.LAST_LEFT : bound_nodes.LAST_RIGHT + 1]:
+            count = int(tree.lists[node, bound_nodes.CUTS])
             fresh = shares[: bound_tree.MOST_CUTS - count]
             tree.cuts[node, count : count + fresh.size] = fresh
-            tree.lists[node, bound_tree.CUTS] = count + fresh.size
+            tree.lists[node, bound_nodes.CUTS] = count + fresh.size
 
     def advance(self, most_looks: int) -> int:
         """Continue until there is something to report: see `kernels.bound_tree.advance`."""
@@ -150,24 +159,25 @@ def _planted(rules: Rules, postures: list[int], twist: float, log: int) -> Tree:
     room = max(FIRST_ROOM, 2 * first)
     tree = Tree(
         heap=np.zeros(room, dtype=np.int64),
-        nodes=np.zeros((room, 3)),
-        lists=np.zeros((room, bound_tree.LISTED), dtype=np.int64),
+        nodes=np.zeros((room, bound_nodes.NODE)),
+        terms=np.zeros((room, bound_multipliers.MOST_TERMS, bound_multipliers.TERM)),
+        lists=np.zeros((room, bound_nodes.LISTED), dtype=np.int64),
         cuts=np.zeros((room, bound_tree.MOST_CUTS)),
         slopes=np.zeros((max(4 * FIRST_ROOM, 2 * count), 2)),
-        closed=np.zeros((log, bound_tree.CLOSED)),
-        counts=np.zeros(bound_tree.COUNTS, dtype=np.int64),
-        values=np.array([bound_tree.NOTHING, bound_tree.NOTHING, bound_tree.NOTHING, 0.0]),
+        closed=np.zeros((log, bound_nodes.CLOSED)),
+        counts=np.zeros(bound_nodes.COUNTS, dtype=np.int64),
+        values=np.array([bound_nodes.NOTHING, bound_nodes.NOTHING, bound_nodes.NOTHING, 0.0]),
         candidate=np.zeros(4),
     )
     tree.slopes[:count, 0], tree.slopes[:count, 1] = slopes[:-1], slopes[1:]
-    tree.counts[bound_tree.SLOPES] = count
+    tree.counts[bound_nodes.SLOPES] = count
     numbers = np.arange(first)
     tree.heap[:first] = numbers
     tree.nodes[:first, :2] = np.tile(np.stack([spins[:-1], spins[1:]], axis=1), (len(postures), 1))
-    tree.lists[:first, bound_tree.POSTURE] = np.repeat(postures, spins.size - 1)
-    tree.lists[:first, bound_tree.COUNT] = count
-    tree.lists[:first, bound_tree.PARENT] = -1
-    tree.counts[bound_tree.HEAP] = tree.counts[bound_tree.NODES] = first
+    tree.lists[:first, bound_nodes.POSTURE] = np.repeat(postures, spins.size - 1)
+    tree.lists[:first, bound_nodes.COUNT] = count
+    tree.lists[:first, bound_nodes.PARENT] = -1
+    tree.counts[bound_nodes.HEAP] = tree.counts[bound_nodes.NODES] = first
     return tree
 
 
@@ -187,7 +197,8 @@ def _grown(tree: Tree) -> Tree:
         return np.concatenate([array, np.zeros_like(array)])
 
     return tree._replace(
-        heap=doubled(tree.heap), nodes=doubled(tree.nodes), lists=doubled(tree.lists), cuts=doubled(tree.cuts),
+        heap=doubled(tree.heap), nodes=doubled(tree.nodes), terms=doubled(tree.terms), lists=doubled(tree.lists),
+        cuts=doubled(tree.cuts),
         slopes=doubled(tree.slopes), closed=doubled(tree.closed),
     )  # fmt: skip
 
@@ -201,5 +212,10 @@ def _room() -> tuple[Any, ...]:
         np.zeros((most, bound_boxes.COLUMNS)),
         np.zeros((most, bound_boxes.KNOWN, 6), dtype=np.int64),
         (np.zeros(most, dtype=np.bool_), np.zeros(intervals.LANES), np.zeros(intervals.LANES)),
-        (np.zeros(most, dtype=np.int64), np.zeros(most, dtype=np.int64), np.zeros((most, most))),
+        (
+            np.zeros(most, dtype=np.int64),
+            np.zeros(most, dtype=np.int64),
+            np.zeros((most, most)),
+            np.zeros((most, most), dtype=np.bool_),
+        ),
     )

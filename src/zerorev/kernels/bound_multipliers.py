@@ -1,0 +1,224 @@
+"""Boxes of pairs of legs, bounded with several conditions at once (theory §3).
+
+A box is dead if one condition fails all over it. But next to the least travel it is conditions that keep it from being
+less; boxes reach across them, and the travel beyond counts as if it were to be had. So conditions g_k >= 0 are added to
+the travel f with multipliers l_k >= 0: f - sum l_k g_k is no more than f wherever all conditions are kept, whatever the
+multipliers are; with Lagrange's it is level at the optimum, and what a box of width w leaves open is of the order of
+w^2 instead of w. Where a few conditions contradict each other the same sum refutes without f (Farkas): no motion keeps
+them all where it is positive.
+
+The multipliers of a node are those of the linear programme that its conditions make at the middle of its best pair of
+boxes. They are for its halves. A term is a condition with its multiplier: leg, joint, look, direction of the joint on
+that leg, and the multiplier of its rate [m]; where that is 0 there is none. Conventions are those of `bound_boxes`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.kernels._jit import kernel
+from zerorev.kernels.bound_boxes import (
+    ALONG_SLOPE,
+    BACK,
+    BY_PSI_HIGH,
+    BY_PSI_LOW,
+    COLUMNS,
+    FORTH,
+    HIGH,
+    LEAST,
+    LOOKS,
+    LOW,
+    MAY_BACK,
+    MAY_FORTH,
+    PER_LEG,
+    STRETCH,
+    WEIGHED,
+    clear,
+    place,
+    share,
+)  # fmt: skip
+from zerorev.kernels.intervals import DERIVATIVE, LANES, UNKNOWN, VALUE, run
+from zerorev.kernels.legs import NIL
+from zerorev.kernels.simplex import CONTRADICTED, FOUND, WIDTH, weighed
+
+MOST_TERMS = 4
+LEG, JOINT, LOOK, DIRECTION, MULTIPLIER, TERM = range(6)  # columns of a term
+ROUNDING = 1e-14  # relative: more than that of the few operations here
+UNKNOWNS = 3  # spin at the target, twist of the first leg, twist of the second
+MOST_ROWS = 2 * 6 * LOOKS
+AROUND = 4.0  # half widths of twist about a pair, within which its neighbours are to be level, too
+
+
+@kernel
+def turns_of(one, other, i):  # type: ignore[no-untyped-def]
+    """How often a joint reverses at the least on a motion of two boxes of legs."""
+    fp, bp, fr, br = one[FORTH, i], one[BACK, i], other[FORTH, i], other[BACK, i]
+    turns = min(min(fp + br, bp + fr), 1 + min(fp + fr, bp + br))
+    if turns == 0 and not ((one[MAY_FORTH, i] and other[MAY_BACK, i]) or (one[MAY_BACK, i] and other[MAY_FORTH, i])):
+        turns = 1
+    return turns
+
+
+@kernel
+def least_rate(rules):  # type: ignore[no-untyped-def]
+    """What a rate must be at least in a joint's own direction; a joint that stands still does not reverse [rad/m]."""
+    return rules.min_rate if rules.min_rate > 0.0 else -NIL
+
+
+@kernel
+def weigh(formulas, rules, terms, of_travel, box, standoffs, by_slope, half_slope, legs):  # type: ignore[no-untyped-def]
+    """Add the weighted conditions to the travel of a box, for either leg of a motion.
+
+    Args:
+        formulas: whose tape `angles` was run.
+        rules: whose threshold counts.
+        terms: shape (MOST_TERMS, TERM).
+        of_travel: 1.0, or 0.0 where the conditions are to contradict each other.
+        box: which one, of those that were placed.
+        standoffs: shape (looks,) [m].
+        by_slope: derivative of the travel by the slope, at least and at most [m].
+        half_slope: of the box [rad/m].
+        legs: in and out, row of the box, shape (COLUMNS,); its travel is known.
+    """
+    rows, unknown, m = formulas.rows, formulas.unknown, least_rate(rules)
+    for leg in range(2):
+        at = WEIGHED + PER_LEG * leg
+        least, low, high = of_travel * legs[LEAST], of_travel * legs[BY_PSI_LOW], of_travel * legs[BY_PSI_HIGH]
+        slope_low, slope_high = of_travel * by_slope[0], of_travel * by_slope[1]
+        size, psi_size, slope_size = abs(least), max(abs(low), abs(high)), max(abs(slope_low), abs(slope_high))
+        known = legs[STRETCH] == 1.0
+        for t in range(MOST_TERMS):
+            if terms[t, MULTIPLIER] == 0.0 or terms[t, LEG] != leg or not known:
+                continue
+            i, look = int(terms[t, JOINT]), int(terms[t, LOOK])
+            lane, d, s = box * standoffs.shape[0] + look, terms[t, DIRECTION], standoffs[look]
+            smooth = unknown[DERIVATIVE, lane] == 0.0
+            row, den = formulas.rate[1, i], formulas.denominator[1, i]
+            if smooth:
+                row, den = formulas.rate_middle[i], formulas.denominator_middle[i]
+            known = unknown[VALUE, lane] == 0.0 and rows[den, LANES + lane] > 0.0
+            if not known:
+                continue
+            # the condition is on the rate times its denominator; any multiplier will do, so that of the middle does
+            factor = terms[t, MULTIPLIER] / rows[den, LANES + lane]
+            most = max(d * rows[row, lane], d * rows[row, LANES + lane])
+            most -= min(m * rows[den, lane], m * rows[den, LANES + lane])
+            least -= factor * most
+            size += factor * abs(most)
+            if not smooth:  # next to a singularity: what holds all over the box
+                continue
+            row, den = formulas.rate_psi[i], formulas.denominator_psi[i]
+            a, b = d * rows[row, lane], d * rows[row, LANES + lane]
+            c, e = m * rows[den, lane], m * rows[den, LANES + lane]
+            psi_low, psi_high = min(a, b) - max(c, e), max(a, b) - min(c, e)
+            row = formulas.rate_slope[i]
+            a, b = d * rows[row, lane], d * rows[row, LANES + lane]
+            by_low, by_high = min(a, b) - s * max(c, e), max(a, b) - s * min(c, e)
+            low, high = low - factor * psi_high, high - factor * psi_low
+            slope_low, slope_high = slope_low - factor * by_high, slope_high - factor * by_low
+            psi_size += factor * max(abs(psi_low), abs(psi_high))
+            slope_size += factor * max(abs(by_low), abs(by_high))
+        legs[at] = least - ROUNDING * size if known else -UNKNOWN
+        legs[at + 1], legs[at + 2] = low - ROUNDING * psi_size, high + ROUNDING * psi_size
+        legs[at + 3] = (max(abs(slope_low), abs(slope_high)) + ROUNDING * slope_size) * half_slope
+
+
+@kernel
+def terms_hold(terms, one, other):  # type: ignore[no-untyped-def]
+    """Whether the joints of all terms go as these say on every motion of two boxes that does not reverse them."""
+    some = False
+    for t in range(MOST_TERMS):
+        if terms[t, MULTIPLIER] == 0.0:
+            continue
+        some, i = True, int(terms[t, JOINT])
+        forth = (terms[t, DIRECTION] > 0.0) == (terms[t, LEG] == 0.0)  # on the first leg; on the second it comes back
+        contrary = one[MAY_BACK, i] and other[MAY_FORTH, i] if forth else one[MAY_FORTH, i] and other[MAY_BACK, i]
+        if contrary or turns_of(one, other, i) > 0:
+            return False
+    return some
+
+
+@kernel
+def weighed_pair(one, other, half_psi):  # type: ignore[no-untyped-def]
+    """What a first leg and a second leg, each of a box, have at least with the weighted conditions [rad]."""
+    a, b = WEIGHED, WEIGHED + PER_LEG
+    varies = max(abs(one[a + 1] + other[b + 1]), abs(one[a + 2] + other[b + 2])) * half_psi + one[a + 3] + other[b + 3]
+    return one[a] + other[b] - varies * (1.0 + 1e-12)
+
+
+@kernel
+def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: ignore[no-untyped-def]
+    """The multipliers of a pair of boxes.
+
+    Args:
+        formulas: of the posture.
+        rules: what is asked.
+        psi: interval of spins at the target, shape (2,).
+        legs: boxes, shape (N, COLUMNS).
+        known: shape (N, KNOWN, 6).
+        pair: which two, shape (2,).
+        terms: out, shape (MOST_TERMS, TERM).
+        room: two rows, each of shape (LANES,).
+
+    Returns:
+        1.0; 0.0 if the conditions contradict each other.
+    """
+    low, high = room
+    rows, unknown, standoffs = formulas.rows, formulas.unknown, np.empty(rules.looks)
+    for t in range(MOST_TERMS):
+        terms[t, MULTIPLIER] = 0.0
+    middle = 0.5 * (psi[0] + psi[1])
+    spins, boxes = np.array([middle, middle]), np.zeros((2, COLUMNS))
+    cost, bound = np.zeros(UNKNOWNS), np.ones(UNKNOWNS)
+    half = np.array([0.5 * (psi[1] - psi[0]), 0.0, 0.0])
+    for leg in range(2):
+        box = legs[pair[leg]]
+        if box[STRETCH] < 1.0:
+            return 1.0
+        boxes[leg, LOW] = boxes[leg, HIGH] = 0.5 * (box[LOW] + box[HIGH])
+        half[1 + leg] = AROUND * 0.5 * (box[HIGH] - box[LOW]) * rules.depth
+        cost[0] += 0.5 * (box[BY_PSI_LOW] + box[BY_PSI_HIGH]) * half[0]
+        cost[1 + leg] = box[ALONG_SLOPE] / rules.depth * half[1 + leg]
+    for j in range(rules.looks):
+        standoffs[j] = rules.depth * share(rules.looks, 0, j)
+    clear(unknown)
+    place(rows, formulas.inputs[1], False, rules, spins, boxes, 0, 2, standoffs, False, low, high)
+    run(formulas.angles, formulas.constants[formulas.starts[1] :], rows, unknown)
+    one, other, m = known[pair[0]], known[pair[1]], least_rate(rules)
+    at, by, spare = np.zeros((MOST_ROWS, WIDTH), dtype=np.int64), np.zeros((MOST_ROWS, WIDTH)), np.empty(MOST_ROWS)
+    which, size, count = np.empty((MOST_ROWS, 4), dtype=np.int64), np.empty(MOST_ROWS), 0  # size: of a row
+    for i in range(6):
+        forth = one[MAY_FORTH, i] and other[MAY_BACK, i]
+        if forth == (one[MAY_BACK, i] and other[MAY_FORTH, i]) or turns_of(one, other, i) > 0:
+            continue  # which way it goes is open, or it reverses
+        for leg in range(2):
+            d = 1.0 if forth == (leg == 0) else -1.0
+            for j in range(rules.looks):
+                lane = leg * rules.looks + j
+                if unknown[VALUE, lane] != 0.0 or unknown[DERIVATIVE, lane] != 0.0:
+                    continue
+                by_den = m * rows[formulas.denominator_psi[i], lane]
+                by_psi = (d * rows[formulas.rate_psi[i], lane] - by_den) * half[0]
+                by_twist = d * rows[formulas.rate_slope[i], lane] - standoffs[j] * by_den
+                by_twist *= half[1 + leg] / rules.depth
+                value = d * rows[formulas.rate_middle[i], lane] - m * rows[formulas.denominator_middle[i], lane]
+                most = max(abs(by_psi), abs(by_twist))
+                if (
+                    most > 0.0
+                    and value < abs(by_psi) + abs(by_twist)
+                    and rows[formulas.denominator_middle[i], lane] > 0.0
+                ):
+                    at[count, 1], by[count, 0], by[count, 1] = 1 + leg, by_psi / most, by_twist / most
+                    spare[count], size[count] = value / most, most / rows[formulas.denominator_middle[i], lane]
+                    which[count, 0], which[count, 1], which[count, 2], which[count, 3] = leg, i, j, int(d)
+                    count += 1
+    x, held, worth = np.empty(UNKNOWNS), np.empty(UNKNOWNS + 1, dtype=np.int64), np.empty(UNKNOWNS + 1)
+    outcome = weighed(cost, -bound, bound, at, by, spare, count, x, held, worth)
+    if outcome != FOUND and outcome != CONTRADICTED:
+        return 1.0
+    for k in range(UNKNOWNS + 1):
+        n = held[k]
+        if 0 <= n < count and worth[k] > 0.0:
+            terms[k, LEG], terms[k, JOINT], terms[k, LOOK] = which[n, 0], which[n, 1], which[n, 2]
+            terms[k, DIRECTION], terms[k, MULTIPLIER] = which[n, 3], worth[k] / size[n]
+    return 1.0 if outcome == FOUND else 0.0
