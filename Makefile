@@ -26,7 +26,7 @@ test: lint  ## what must hold; the tests marked long are left to `make long`
 	$(BIN)/pytest -q -n auto --dist loadgroup -m "not long and not soak"
 
 long: $(READY)  ## the tests that take minutes
-	$(BIN)/pytest -q -m "long and not soak"
+	$(BIN)/pytest -q -n auto --dist loadgroup -m "long and not soak"
 
 soak: $(READY)  ## the tests that take longer than CI allows
 	$(BIN)/pytest -q -m soak
