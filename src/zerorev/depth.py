@@ -225,10 +225,8 @@ class _Search:
         return np.asarray(self.branches[:, None] & np.repeat(alive, 2, axis=0))
 
     def _look(self, depth: float, lines: npt.NDArray[np.bool_]) -> Array:
-        out = np.empty((4, self.psi.size, pairs.LOOKED))
-        pairs.look(
-            self.robot.arm, self.plane, self.psi, lines, np.ones(6, dtype=bool), self.asked(depth), legs.TRAVEL, out
-        )
+        out, asked, keep = np.empty((4, self.psi.size, pairs.LOOKED)), self.asked(depth), np.ones(6, dtype=bool)
+        pairs.look(self.robot.arm, self.plane, self.psi, lines, keep, asked, legs.TRAVEL, self.min_rate, out)
         return out
 
     def _starts(self, depth: float, found: Array) -> list[_Start]:

@@ -9,7 +9,7 @@ import pytest
 
 from oracles import arm as twin
 from zerorev import kinematics
-from zerorev.kernels.arm import WRIST_SINGULAR
+from zerorev.kernels.arm import WRIST_SINGULAR, other_flip
 from zerorev.model.hole import Hole
 from zerorev.model.tool import Tool
 
@@ -104,6 +104,14 @@ class TestInverse:
         apart = distance(ours[:, :, None], theirs[:, None])
         assert apart.min(axis=2)[~np.isnan(ours[..., 0])].max() < 1e-7
         assert apart.min(axis=1)[~np.isnan(theirs[..., 0])].max() < 1e-7
+
+    def test_the_other_flip_of_a_branch_is_its_neighbour(self, any_robot):
+        T = kinematics.forward(any_robot, random_joints(any_robot, FEW, seed=4))
+        branches, found = kinematics.inverse(any_robot, T).reshape(-1, 2, 6), np.empty(6)
+        for pair in branches[~np.isnan(branches).any(axis=(1, 2))]:
+            for one, other in (pair, pair[::-1]):
+                other_flip(one, found)
+                np.testing.assert_allclose(found, other, atol=1e-14)
 
     def test_branches_stand_in_the_order_of_their_bits(self, any_robot):
         T = kinematics.forward(any_robot, random_joints(any_robot, FEW, seed=3))

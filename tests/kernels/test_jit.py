@@ -67,6 +67,37 @@ def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(tmp_p
     assert b"Asked" not in index
 
 
+@compiled
+def test_a_lean_kernel_makes_no_array():
+    @_jit.lean
+    def summed(values):
+        made = np.empty(3)
+        made[0] = values[0]
+        return made[0]
+
+    with pytest.raises((NotImplementedError, numba.errors.NumbaError)):
+        summed(np.ones(3))
+
+
+@compiled
+def test_a_lean_kernel_may_call_one_that_makes_arrays_whichever_is_compiled_first():
+    @_jit.kernel
+    def made(values):
+        copy = np.empty(values.shape[0])
+        copy[:] = 2.0 * values
+        return copy[0]
+
+    @_jit.lean
+    def called(values):
+        return made(values)
+
+    called(np.ones(4))  # the compiler itself holds what it is given
+    values = np.ones(4)
+    holders = sys.getrefcount(values)
+    assert [called(values) for _ in range(1000)] == [2.0] * 1000
+    assert sys.getrefcount(values) == holders
+
+
 SLOW = """
 import sys
 from zerorev.kernels._jit import kernel

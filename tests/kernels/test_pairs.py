@@ -139,11 +139,11 @@ class TestBestPair:
         assert out[pairs.MARGIN] == -np.inf
 
 
-def look(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=EVERY_BRANCH):
+def look(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=EVERY_BRANCH, enough=-np.inf):
     """Value, margin and guess at every spin, shapes (4, K)."""
     out = np.empty((4, psi.size, pairs.LOOKED))
     lines = np.repeat(branches[:, None], psi.size, axis=1)
-    pairs.look(robot.arm, plane, psi, lines, keep, wanted, mode, out)
+    pairs.look(robot.arm, plane, psi, lines, keep, wanted, mode, enough, out)
     return np.moveaxis(out[..., :3], -1, 0)
 
 
@@ -203,6 +203,19 @@ class TestLook:
         assert (alone[0, [0, 1, 3]] == np.inf).all()
         assert (alone[1, [0, 1, 3]] == -np.inf).all()
         assert (alone[1] <= whole[1]).all()
+
+    def test_with_too_little_margin_on_one_side_the_other_is_left_out(self, robot, positions):
+        plane = Start(robot, positions[0].hole, 4, 0.0, 0.0).plane
+        psi = np.linspace(-3, 3, 12 if SLOW else 60)
+        wanted = asked(robot, positions[0].hole)
+        whole = np.array(look(robot, plane, psi, wanted))
+        enough = np.median(whole[1][np.isfinite(whole[1])])
+        left = np.array(look(robot, plane, psi, wanted, enough=enough))
+        more = whole[1] > enough
+        assert 0 < more.sum() < np.isfinite(whole[1]).sum()
+        np.testing.assert_array_equal(left[:, more], whole[:, more])
+        assert (left[1, ~more] <= enough).all()
+        assert (left[1] >= whole[1]).all()
 
 
 def least_of_greatest(start, wanted, within=False):

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 
 # Below this sine of joint 5 the axes 4 and 6 coincide as far as double precision can tell.
 WRIST_SINGULAR = 1e-10
 
 
-@kernel
+@lean
 def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-def]
     """Cosines and sines of the model angles of one posture, with sin(q5) >= 0.
 
@@ -90,7 +90,7 @@ def solve_posture(arm, R, wx, wy, wz, posture, cs):  # type: ignore[no-untyped-d
     return True
 
 
-@kernel
+@lean
 def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-untyped-def]
     """Controller joint rates that move the wrist centre at v and turn the flange at o, for sin(q5) > 0.
 
@@ -143,7 +143,7 @@ def joint_velocity(arm, cs, vx, vy, vz, ox, oy, oz, out):  # type: ignore[no-unt
     out[5] = sign[5] * q6
 
 
-@kernel
+@lean
 def solve_at(arm, plane, standoff, psi, posture, cs):  # type: ignore[no-untyped-def]
     """`solve_posture` at one point of the twist plane.
 
@@ -179,7 +179,7 @@ def solve_at(arm, plane, standoff, psi, posture, cs):  # type: ignore[no-untyped
     return solve_posture(arm, R, wx, wy, wz, posture, cs), rx, ry, rz
 
 
-@kernel
+@lean
 def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # type: ignore[no-untyped-def]
     """The two rate fields at one point of the twist plane, for sin(q5) > 0 (theory §1); `field.rates` is for many.
 
@@ -205,7 +205,7 @@ def twist_field(arm, plane, standoff, psi, posture, cs, theta_s, theta_psi):  # 
     return True
 
 
-@kernel
+@lean
 def controller_angles(arm, cs, negative, out):  # type: ignore[no-untyped-def]
     """Controller angles within (-pi, pi] of a solved posture.
 
@@ -230,7 +230,22 @@ def controller_angles(arm, cs, negative, out):  # type: ignore[no-untyped-def]
         out[i] = angle
 
 
-@kernel
+@lean
+def other_flip(angles, out):  # type: ignore[no-untyped-def]
+    """The same pose with the wrist flipped: joints 4 and 6 turned by half a turn, joint 5 to the other side.
+
+    Args:
+        angles: controller angles within (-pi, pi], shape (6,).
+        out: out, shape (6,), likewise.
+    """
+    for i in range(6):
+        out[i] = angles[i]
+    out[4] = -angles[4]
+    for i in (3, 5):
+        out[i] = angles[i] - np.pi if angles[i] > 0.0 else angles[i] + np.pi
+
+
+@lean
 def flip_sign(arm, branch):  # type: ignore[no-untyped-def]
     """What the rate of joint 5 is multiplied by on this branch: 1 where sin(q5) > 0, else -1."""
     return 1.0 if (branch % 2 == 0) == (arm.sign[4] > 0.0) else -1.0

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import WRIST_SINGULAR
 
 # A workspace is a flat array of ROOM numbers, in rows of BLOCK points: what goes in, theta_s and theta_psi of the six
@@ -24,7 +24,7 @@ _HALF_PI_HIGH = 1.5707963267341256  # the leading 33 bits, so that a few turns t
 _HALF_PI_LOW = 6.077100506506192e-11
 
 
-@kernel
+@lean
 def cos_sin(x):  # type: ignore[no-untyped-def]
     """Cosine and sine of an angle of a few turns [rad], to the last two bits, without a branch.
 
@@ -53,7 +53,7 @@ def cos_sin(x):  # type: ignore[no-untyped-def]
     return (-c if (quarter == 1.0) | (quarter == 2.0) else c), (-s if quarter >= 2.0 else s)
 
 
-@kernel
+@lean
 def spun(plane, v0, v1, v2):  # type: ignore[no-untyped-def]
     """A vector of the tcp frame seen from the base as the tool spins: its constant, its cosine and its sine part."""
     x0, y0, zx, x1, y1, zy, x2, y2, zz = plane.R_base_tcp0
@@ -64,7 +64,7 @@ def spun(plane, v0, v1, v2):  # type: ignore[no-untyped-def]
     )
 
 
-@kernel
+@lean
 def fields(arm, plane, posture, count, work):  # type: ignore[no-untyped-def]
     """Both rate fields of one posture at up to BLOCK points, for sin(q5) > 0.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.legs import GREATEST_MARGIN, PLUNGE_ROTATION, ROWS, judge_leg, trace_leg
 from zerorev.kernels.order import order_of
 from zerorev.kernels.weigh import SIEVE_ERROR, sift, weigh_leg
@@ -22,7 +22,7 @@ GOLDEN_STEPS = 20
 GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
-@kernel
+@lean
 def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-untyped-def]
     """Slopes worth a look on one side of the critical rates of the joints to keep.
 
@@ -53,28 +53,31 @@ def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-u
     if nearest >= farthest:
         return 0
     # the critical rates of the joints that may turn cut the side into pieces
-    anchors = np.empty(7)
-    anchors[0] = nearest
-    pieces = 1
+    at, last = MAX_SLOPES - 7, MAX_SLOPES - 7  # at the end of what is written, in order
+    out[at] = nearest
     for i in range(6):
         if not keep[i] and nearest < side * kappa[i] < farthest:
-            anchors[pieces] = side * kappa[i]
-            pieces += 1
-    anchors = anchors[order_of(anchors[:pieces])]
+            n = last
+            while out[n] > side * kappa[i]:
+                out[n + 1] = out[n]
+                n -= 1
+            out[n + 1] = side * kappa[i]
+            last += 1
+    outermost = out[last]
     out[0] = side * nearest
     count = 1
-    for p in range(pieces - 1):
+    for p in range(at, last):
         for j in range(SLOPES_BETWEEN):
-            out[count] = side * (anchors[p] + (anchors[p + 1] - anchors[p]) * (j + 0.5) / SLOPES_BETWEEN)
+            out[count] = side * (out[p] + (out[p + 1] - out[p]) * (j + 0.5) / SLOPES_BETWEEN)
             count += 1
-    span = farthest - anchors[pieces - 1]
+    span = farthest - outermost
     for j in range(GEOMETRIC_SLOPES):
-        out[count] = side * (anchors[pieces - 1] + span * 1e-4 ** (1.0 - j / (GEOMETRIC_SLOPES - 1.0)))
+        out[count] = side * (outermost + span * 1e-4 ** (1.0 - j / (GEOMETRIC_SLOPES - 1.0)))
         count += 1
     return count
 
 
-@kernel
+@lean
 def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """Follow one slope and remember it where it is the best so far.
 
@@ -97,11 +100,7 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
         margin: see `judge_leg`; beyond a limit, less than asked; -inf out of reach.
     """
     if asked.turn_inside and asked.lower[0] > -np.inf:
-        # a joint that turns round may come nearest to a limit anywhere
-        leg = np.empty((ROWS, 6))
-        if not trace_leg(arm, plane, branch, psi_t, slope, asked.depth, nodes, work, leg):
-            return np.inf, -np.inf, -np.inf
-        margin, slack, travel = judge_leg(leg, held[0], held[1], held[2], asked.depth, asked)
+        margin, slack, travel = _follow(arm, plane, branch, psi_t, slope, held, asked, nodes, work)
     else:
         margin, slack, travel = weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work)
     if margin == -np.inf:
@@ -120,6 +119,15 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
     if cost < best[0]:
         best[0], best[1] = cost, slope
     return cost, min(margin - asked.min_rate, slack / asked.depth), margin
+
+
+@kernel
+def _follow(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # type: ignore[no-untyped-def]
+    """Margin (-inf out of reach), slack and travel of a leg whose joints may come nearest to a limit anywhere."""
+    leg = np.empty((ROWS, 6))
+    if not trace_leg(arm, plane, branch, psi_t, slope, asked.depth, nodes, work, leg):
+        return -np.inf, -np.inf, np.inf
+    return judge_leg(leg, held[0], held[1], held[2], asked.depth, asked)
 
 
 @kernel
@@ -204,7 +212,7 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
         _interval_end(arm, plane, branch, psi_t, found, excess, end, -np.inf, held, asked, mode, nodes, work, best)
 
 
-@kernel
+@lean
 def _settle(arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """From a candidate that will do, go to where the cost is least: the end of its interval, or a dip inside."""
     low, high = slopes[j], slopes[j]
@@ -244,7 +252,7 @@ def _settle(arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, held, 
     _golden(arm, plane, branch, psi_t, low, high, False, held, asked, mode, nodes, work, best)
 
 
-@kernel
+@lean
 def _golden(arm, plane, branch, psi_t, a, b, climb, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """Golden section between two slopes, up to the greatest margin or down to the least cost."""
     x, y = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
@@ -272,7 +280,7 @@ def _golden(arm, plane, branch, psi_t, a, b, climb, held, asked, mode, nodes, wo
             at_y = try_slope(arm, plane, branch, psi_t, y, held, asked, mode, nodes, work, best)
 
 
-@kernel
+@lean
 def most_gained(a, x, y, b, at_a, at_x, at_y, at_b):  # type: ignore[no-untyped-def]
     """How far a function between a and b can lie beyond all that is known of it, if it has one peak and is concave.
 
@@ -288,7 +296,7 @@ def most_gained(a, x, y, b, at_a, at_x, at_y, at_b):  # type: ignore[no-untyped-
     return steepest * abs(b - a)
 
 
-@kernel
+@lean
 def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """Locate where a slope just stops doing: regula falsi (Illinois), bisection where one side cannot be run.
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
 from zerorev.kernels.field import BLOCK, PSI, STANDOFF, THETA_PSI, THETA_S, fields
 
@@ -83,7 +83,7 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, work, leg):  # typ
     return True
 
 
-@kernel
+@lean
 def place(psi_t, slope, step, start, count, work):  # type: ignore[no-untyped-def]
     """Points of a leg, from the one numbered `start` on, into the workspace."""
     for k in range(count):
@@ -92,7 +92,7 @@ def place(psi_t, slope, step, start, count, work):  # type: ignore[no-untyped-de
         work[PSI * BLOCK + k] = psi_t + slope * s
 
 
-@kernel
+@lean
 def _extend(leg, i, n, is_last, step, rate, earlier, before):  # type: ignore[no-untyped-def]
     """Take the n-th point of a joint into a traced leg; the two points before it are known."""
     if n == 0:
@@ -120,7 +120,7 @@ def _extend(leg, i, n, is_last, step, rate, earlier, before):  # type: ignore[no
     leg[GREATEST_ANGLE, i] = max(leg[GREATEST_ANGLE, i], leg[END_ANGLE, i])
 
 
-@kernel
+@lean
 def joint_travel(leg, i):  # type: ignore[no-untyped-def]
     """Angle moved by a joint on a traced leg [rad]: exact where it does not turn round, from its extremes if once."""
     if leg[TURNS, i] == 0.0:
@@ -130,7 +130,7 @@ def joint_travel(leg, i):  # type: ignore[no-untyped-def]
     return leg[MOVED, i]
 
 
-@kernel
+@lean
 def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-untyped-def]
     """Margin, slack to the limits, and travel of a traced leg.
 

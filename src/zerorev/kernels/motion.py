@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import controller_angles, flip_sign, solve_at
 from zerorev.kernels.field import BLOCK, PSI, ROOM, STANDOFF, THETA_PSI, THETA_S, fields
 
@@ -23,7 +23,7 @@ ROOT_POINTS, ROOT_TIMES = 33, 9  # each 32 times closer, from a sample's distanc
 RISE = 1e-6  # relative: a joint of constant speed does not dip, whatever its last digits do
 
 
-@kernel
+@lean
 def rates_at(arm, plane, branch, standoff, psi, corner, k, x, first, count, work, out):  # type: ignore[no-untyped-def]
     """Rates along the motion at some of its places.
 
@@ -68,7 +68,7 @@ def spread(standoff, corner, per_leg, least):  # type: ignore[no-untyped-def]
     return counts
 
 
-@kernel
+@lean
 def dips(r, n, same_before, same_after, nil):  # type: ignore[no-untyped-def]
     """Whether any joint is slower at a sample than at both of its neighbours on the segment; NaN is no neighbour."""
     for i in range(6):

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
-from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
+from zerorev.kernels._jit import kernel, lean
+from zerorev.kernels.arm import controller_angles, flip_sign, other_flip, twist_field
 from zerorev.kernels.field import ROOM
 from zerorev.kernels.leg_search import GOLDEN, MAX_SLOPES, best_leg, most_gained, slope_candidates
 from zerorev.kernels.legs import GREATEST_ANGLE, GREATEST_MARGIN, LEAST_ANGLE, PLUNGE_ROTATION, ROWS, TRAVEL, trace_leg
@@ -27,7 +27,7 @@ MARGIN_LOOKED, SLOPES_LOOKED = 1, 3
 HOPELESS = 1e6  # what a pair that will not do is worth, at least: the more it lacks, the more
 
 
-@kernel
+@lean
 def turn_choices(principal, asked):  # type: ignore[no-untyped-def]
     """In how many ways the turns of six joints can be chosen so that the target lies within the limits."""
     choices = 1
@@ -38,7 +38,7 @@ def turn_choices(principal, asked):  # type: ignore[no-untyped-def]
     return choices
 
 
-@kernel
+@lean
 def take_turns(principal, asked, choice, at_target):  # type: ignore[no-untyped-def]
     """Joint angles at the target for one of the `turn_choices`, written to `at_target`, shape (6,)."""
     for i in range(6):
@@ -69,9 +69,9 @@ def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode
             greatest margin that both legs can have (-inf where one cannot be run at all), branch, psi_t.
     """
     kappa, sense, at_target, principal = np.empty(6), np.empty(6), np.empty(6), np.empty((2, 6))
-    choices = np.zeros(2, dtype=np.int64)
+    choices, cs = np.zeros(2, dtype=np.int64), np.empty((6, 2))
     out[:] = np.inf, np.nan, np.nan, -np.inf, -1.0, psi_t
-    if not set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal, choices):
+    if not set_out(arm, plane, posture, psi_t, asked, branches, cs, kappa, sense, principal, choices):
         return
 
     # The limits seldom bind: look without them first, and keep that answer if some choice of turns brings it within.
@@ -100,7 +100,7 @@ def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode
                 out[BRANCH] = 2.0 * posture + flip
 
 
-@kernel
+@lean
 def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
     """Whether some turns bring both of two legs within the limits.
 
@@ -160,7 +160,7 @@ def _pair_within(arm, plane, branch, psi_t, held, asked, mode, nodes, work, out)
 
 
 @kernel
-def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-untyped-def]
+def look(arm, plane, psi, lines, keep, asked, mode, enough, out):  # type: ignore[no-untyped-def]
     """A coarse look along the target line: what a few points of a few legs out of each spin of a grid say.
 
     Args:
@@ -171,12 +171,13 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
         keep: whether a joint must keep its direction, shape (6,).
         asked: `Asked`.
         mode: PLUNGE_ROTATION, or TRAVEL.
+        enough: a margin; where no leg on one side has more, nothing rests on the other side, and it is left out.
         out: out, shape (4, K, LOOKED): about the least value of pairs that may do (inf: none), what the margin of a
             pair is at most (-inf: none can be run), about the value of the pair that has it, and its slopes.
     """
     work = np.empty(ROOM)
     kappa, sense, principal = np.empty(6), np.empty(6), np.empty((2, 6))
-    choices = np.zeros(2, dtype=np.int64)
+    choices, cs = np.zeros(2, dtype=np.int64), np.empty((6, 2))
     slopes, ceiling, travel = np.empty(MAX_SLOPES), np.empty(MAX_SLOPES), np.empty(MAX_SLOPES)
     ends = np.empty((MAX_SLOPES, 6))
     for posture in range(4):
@@ -186,10 +187,12 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
             wanted = lines[:, n]
             if not (wanted[2 * posture] or wanted[2 * posture + 1]):
                 continue
-            if not set_out(arm, plane, posture, psi[n], asked, wanted, kappa, sense, principal, choices):
+            if not set_out(arm, plane, posture, psi[n], asked, wanted, cs, kappa, sense, principal, choices):
                 continue
             spin[:3] = 0.0, np.inf, 0.0
             for k in range(2):
+                if k == 1 and not spin[1] > enough:
+                    break
                 side = 1.0 - 2.0 * k
                 count = slope_candidates(kappa, keep, side, psi[n], asked, slopes)
                 sift(
@@ -199,7 +202,7 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
                 for j in range(count):
                     if mode == PLUNGE_ROTATION:
                         travel[j] = abs(slopes[j])
-                    if not _may_fit(ends[j], principal, choices, asked):
+                    if not _may_fit(ends, j, principal, choices, asked):
                         ceiling[j], travel[j] = -np.inf, np.inf
                 least, greatest, there = np.inf, -np.inf, np.inf
                 for j in range(count):
@@ -223,23 +226,26 @@ def look(arm, plane, psi, lines, keep, asked, mode, out):  # type: ignore[no-unt
                     spin[2] += there
 
 
-@kernel
-def _may_fit(end, principal, choices, asked):  # type: ignore[no-untyped-def]
+@lean
+def _may_fit(ends, leg, principal, choices, asked):  # type: ignore[no-untyped-def]
     """Whether a leg whose outer end is roughly known may lie within the limits on either wrist flip."""
     for flip in range(2):
         fits = choices[flip] > 0
         for i in range(6):
-            there = (1.0 - SIEVE_ERROR) * (-end[i] if flip == 1 and i == 4 else end[i])
+            if not fits:
+                break
+            there = (1.0 - SIEVE_ERROR) * (-ends[leg, i] if flip == 1 and i == 4 else ends[leg, i])
             low, high = principal[flip, i] + min(0.0, there), principal[flip, i] + max(0.0, there)
-            first = np.ceil((asked.lower[i] - low) / (2.0 * np.pi))
-            fits = fits and high + 2.0 * np.pi * first <= asked.upper[i]
+            if not (low >= asked.lower[i] and high <= asked.upper[i]):  # else it fits as it is
+                first = np.ceil((asked.lower[i] - low) / (2.0 * np.pi))
+                fits = high + 2.0 * np.pi * first <= asked.upper[i]
         if fits:
             return True
     return False
 
 
-@kernel
-def set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal, choices):  # type: ignore[no-untyped-def]
+@lean
+def set_out(arm, plane, posture, psi_t, asked, branches, cs, kappa, sense, principal, choices):  # type: ignore[no-untyped-def]
     """Whether legs can set out from a spin at the target at all.
 
     Args:
@@ -249,12 +255,12 @@ def set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal
         psi_t: spin at the target [rad].
         asked: `Asked`.
         branches: whether to look at a branch, shape (8,).
+        cs: out, shape (6, 2): cosines and sines of the model angles.
         kappa: out, shape (6,): critical rates [rad/m].
         sense: out, shape (6,): signs of theta_psi on the unflipped branch.
         principal: out, shape (2, 6): angles within (-pi, pi], of both flips.
         choices: out, shape (2,): `turn_choices` of both flips.
     """
-    cs = np.empty((6, 2))
     theta_s, theta_psi = kappa, sense
     if not twist_field(arm, plane, 0.0, psi_t, posture, cs, theta_s, theta_psi) or np.isnan(theta_psi[0]):
         return False
@@ -262,11 +268,10 @@ def set_out(arm, plane, posture, psi_t, asked, branches, kappa, sense, principal
         kappa[i] = -theta_s[i] / theta_psi[i]
         sense[i] = 1.0 if theta_psi[i] > 0.0 else -1.0
     sense[4] *= flip_sign(arm, 2 * posture)
+    controller_angles(arm, cs, False, principal[0])
+    other_flip(principal[0], principal[1])
     for flip in range(2):
-        choices[flip] = 0
-        if branches[2 * posture + flip]:
-            controller_angles(arm, cs, flip == 1, principal[flip])
-            choices[flip] = turn_choices(principal[flip], asked)
+        choices[flip] = turn_choices(principal[flip], asked) if branches[2 * posture + flip] else 0
     return choices[0] + choices[1] > 0
 
 

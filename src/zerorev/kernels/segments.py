@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.field import BLOCK, PSI, STANDOFF, fields, rates, spun
 from zerorev.kernels.tube import HIGH, KEPT, LEFT, LOW, RIGHT, admissible, drift
 
@@ -155,7 +155,7 @@ def linearise(arm, plane, posture, side, standoff, psi, shares, min_rate, unit, 
                 out[k, q, i, 4] = share * by_psi + by_slope
 
 
-@kernel
+@lean
 def elbow(arm, plane, posture, standoff, psi):  # type: ignore[no-untyped-def]
     """How far the elbow is from stretched or folded, which is where reach ends.
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import controller_angles, flip_sign, solve_at, twist_field
 from zerorev.kernels.segments import elbow, linearise
 from zerorev.kernels.simplex import WIDTH, solve
@@ -132,13 +132,13 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
     return lack
 
 
-@kernel
+@lean
 def _worth(goal, price, lack):  # type: ignore[no-untyped-def]
     """What is lacking, at its price; margin is the one goal for which to lack less than nothing is worth more."""
     return price * (lack if goal == MARGIN else max(lack, 0.0))
 
 
-@kernel
+@lean
 def _move(share, standoff, psi, step, there):  # type: ignore[no-untyped-def]
     """Legs with their unknowns changed."""
     segments = standoff.shape[1] - 1
@@ -149,7 +149,7 @@ def _move(share, standoff, psi, step, there):  # type: ignore[no-untyped-def]
             there[1][k, n] = psi[k, n] + step[_spin(k, n, segments)]
 
 
-@kernel
+@lean
 def _spin(k, n, segments):  # type: ignore[no-untyped-def]
     """Which unknown is the spin of the n-th breakpoint of a leg."""
     return 1 if n == 0 else 1 + k * segments + n
@@ -268,7 +268,7 @@ def _follow(arm, plane, branch, side, standoff, psi, first, moved):  # type: ign
     return True
 
 
-@kernel
+@lean
 def _room(first, moved, unit, rules, spare):  # type: ignore[no-untyped-def]
     """Room of the joints at the outer ends of two legs, each with the turns that leave it most.
 
@@ -295,7 +295,7 @@ def _room(first, moved, unit, rules, spare):  # type: ignore[no-untyped-def]
     return lack
 
 
-@kernel
+@lean
 def _twists(rules, share, standoff, psi, at, by, spare):  # type: ignore[no-untyped-def]
     """Rows for the greatest twist rate of each segment, to either side."""
     segments, r = standoff.shape[1] - 1, 0

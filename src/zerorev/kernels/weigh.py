@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels._jit import kernel
+from zerorev.kernels._jit import lean
 from zerorev.kernels.arm import flip_sign
-from zerorev.kernels.field import BLOCK, MOTION, SIGNS, SLOPE, THETA_PSI, THETA_S, WORST, fields
+from zerorev.kernels.field import BLOCK, MOTION, PSI, SIGNS, SLOPE, STANDOFF, THETA_PSI, THETA_S, WORST, fields
 from zerorev.kernels.legs import NIL, place
 
 THETA_PSI_ON = (THETA_PSI - THETA_S) * BLOCK  # from a joint's theta_s to its theta_psi
@@ -21,7 +21,7 @@ SIEVE = 4  # points on a leg that is first looked at
 SIEVE_ERROR = 0.02  # of the travel told from those
 
 
-@kernel
+@lean
 def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):  # type: ignore[no-untyped-def]
     """The rates of a leg in the workspace: each joint's, and at each node the worst of all and the motion of all.
 
@@ -63,7 +63,7 @@ def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):
         _fold(work, i, sign, spare, -1.0, nodes)
 
 
-@kernel
+@lean
 def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # type: ignore[no-untyped-def]
     """Margin, slack and travel of a leg: what `judge_leg` says of `trace_leg`, at a tenth of the cost.
 
@@ -114,7 +114,7 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
     return worst, slack, step * (motion + _sum_ends(work, MOTION, nodes))
 
 
-@kernel
+@lean
 def _fold(work, i, sign, spare, nil, count):  # type: ignore[no-untyped-def]
     """Turn the fields of a joint into its rate, and take that into the worst and the motion of all at each point."""
     for n in range(count):
@@ -126,7 +126,7 @@ def _fold(work, i, sign, spare, nil, count):  # type: ignore[no-untyped-def]
         work[MOTION * BLOCK + n] += moved
 
 
-@kernel
+@lean
 def between_nodes(work, c):  # type: ignore[no-untyped-def]
     """The least of the parabolas through three nodes of each joint, the middle one of them numbered c."""
     least = np.inf
@@ -140,14 +140,14 @@ def between_nodes(work, c):  # type: ignore[no-untyped-def]
     return least
 
 
-@kernel
+@lean
 def _sum_ends(work, row, nodes):  # type: ignore[no-untyped-def]
     """What the ends add to a plain sum over the nodes, so that it integrates to third order (Gregory)."""
     a, z = row * BLOCK, row * BLOCK + nodes - 1
     return (work[a + 1] + work[z - 1]) / 6.0 - (work[a] + work[z]) * 0.625 - (work[a + 2] + work[z - 2]) / 24.0
 
 
-@kernel
+@lean
 def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, ceiling, travel, ends):  # type: ignore[no-untyped-def]
     """What the margin of each of many legs is at most, and about its travel, from a few points of each.
 
@@ -167,35 +167,48 @@ def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, cei
         ends: out, shape (count, 6): about the angles at the outer end, relative to the target [rad].
     """
     at_once = BLOCK // SIEVE
+    step, five = asked.depth / (SIEVE - 1), flip_sign(arm, branch)
     for first in range(0, count, at_once):
         legs = min(at_once, count - first)
-        for j in range(legs):
-            place(psi_t, slopes[first + j], asked.depth / (SIEVE - 1), 0, SIEVE, work[j * SIEVE :])
-        points = legs * SIEVE
-        fields(arm, plane, branch // 2, points, work)
-        for n in range(points):
-            work[SLOPE * BLOCK + n] = slopes[first + n // SIEVE]
+        # node by node, all legs in each; the target, where all of them set out, last and only once
+        outset = (SIEVE - 1) * legs
+        for k in range(1, SIEVE):
+            s = k * step
+            for j in range(legs):
+                work[STANDOFF * BLOCK + (k - 1) * legs + j] = s
+                work[PSI * BLOCK + (k - 1) * legs + j] = psi_t + slopes[first + j] * s
+        work[STANDOFF * BLOCK + outset], work[PSI * BLOCK + outset] = 0.0, psi_t
+        fields(arm, plane, branch // 2, outset + 1, work)
+        for row in range(THETA_S, THETA_PSI + 6):
+            there = work[row * BLOCK + outset]
+            for j in range(1, legs):
+                work[row * BLOCK + outset + j] = there
+        for k in range(SIEVE):
+            for j in range(legs):
+                work[SLOPE * BLOCK + k * legs + j] = slopes[first + j]
+        for n in range(SIEVE * legs):
             work[WORST * BLOCK + n] = np.inf
             work[MOTION * BLOCK + n] = 0.0
-        five = flip_sign(arm, branch)
         for i in range(6):
             spare = asked.min_rate if asked.mean_rule else 0.0
             # what moves so little may be a joint that does not move, which does not reverse: a ceiling is a ceiling
-            _fold(work, i, sense[i] * (five if i == 4 else 1.0), spare if keep[i] else np.inf, NIL, points)
+            _fold(work, i, sense[i] * (five if i == 4 else 1.0), spare if keep[i] else np.inf, NIL, SIEVE * legs)
         for j in range(legs):
-            worst = WORST * BLOCK + j * SIEVE
-            moved = _mean_of_four(work, MOTION * BLOCK + j * SIEVE)
+            worst = WORST * BLOCK + j
+            moved = _mean_of_four(work, MOTION * BLOCK + j, legs)
             if np.isnan(moved):
                 ceiling[first + j], travel[first + j] = -np.inf, np.inf
             else:
-                ceiling[first + j] = min(work[worst], work[worst + 1], work[worst + 2], work[worst + 3])
+                ceiling[first + j] = min(
+                    min(work[worst + outset], work[worst]), min(work[worst + legs], work[worst + 2 * legs])
+                )
                 travel[first + j] = asked.depth * moved
             for i in range(6):
-                end = asked.depth * _mean_of_four(work, (THETA_S + i) * BLOCK + j * SIEVE)
+                end = asked.depth * _mean_of_four(work, (THETA_S + i) * BLOCK + j, legs)
                 ends[first + j, i] = end * five if i == 4 else end
 
 
-@kernel
-def _mean_of_four(work, at):  # type: ignore[no-untyped-def]
-    """Mean over a leg of what four even points of it have: Simpson's 3/8 rule."""
-    return (work[at] + 3.0 * (work[at + 1] + work[at + 2]) + work[at + 3]) / 8.0
+@lean
+def _mean_of_four(work, at, legs):  # type: ignore[no-untyped-def]
+    """Mean over a leg of what four even points of it have, the one at the target last: Simpson's 3/8 rule."""
+    return (work[at + 3 * legs] + 3.0 * (work[at] + work[at + legs]) + work[at + 2 * legs]) / 8.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -46,7 +47,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, (np.ndarray, np.generic)):
         return plain(value.tolist())
     if isinstance(value, float):
-        if not np.isfinite(value):
+        if not math.isfinite(value):
             return None
         return float(f"{value:.13g}") if abs(value) > 1e-12 else 0.0
     return value

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class Profile:
         """Two straight legs (thesis eq. 3.20): depth and corner stand-off [m], spins [rad]."""
         return cls(np.array([depth, corner, depth]), np.array([psi_start, psi_target, psi_end]))
 
-    @property
+    @cached_property
     def corner(self) -> int:
         """Index of the breakpoint at the turning point of the motion."""
         return int(np.argmin(self.standoff))

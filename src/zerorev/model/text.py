@@ -270,13 +270,16 @@ def json_pieces(data: dict[str, Any]) -> Iterator[str]:
     yield "\n}\n"
 
 
+_on_a_line = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode  # made once: `json.dumps` does at each call
+
+
 def _laid_out(data: Any, indent: int, used: int) -> str:
-    line = json.dumps(data, ensure_ascii=False, allow_nan=False)
+    line = _on_a_line(data)
     if not isinstance(data, (dict, list)) or not data or (indent > 0 and indent + used + len(line) <= LINE_WIDTH):
         return line
     inner, close = "\n" + " " * (indent + 2), "\n" + " " * indent
     if isinstance(data, dict):
-        names = {key: json.dumps(key, ensure_ascii=False) + ": " for key in data}
+        names = {key: _on_a_line(key) + ": " for key in data}
         entries = [names[key] + _laid_out(value, indent + 2, len(names[key]) + 1) for key, value in data.items()]
         return "{" + inner + ("," + inner).join(entries) + close + "}"
     return "[" + inner + ("," + inner).join(_laid_out(value, indent + 2, 1) for value in data) + close + "]"

@@ -117,7 +117,7 @@ class Valleys:
         """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
         out = np.empty((4, self.psi.size, pairs.LOOKED))
         lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
-        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, mode, out)
+        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, mode, -np.inf, out)
         value, margin, guess = np.moveaxis(out[..., :3], -1, 0)
         return value, margin, guess
 

@@ -125,11 +125,12 @@ def posture_of(arm: ArmGeometry, joints: Array) -> Posture:
     Returns:
         Signs; +1 on the singular postures between two signs.
     """
-    body = skeleton(arm, joints[None])
-    ahead = _dot(body.wrist, body.forward)
-    upper, line = _in_plane(body.elbow - body.shoulder, body), _in_plane(body.wrist - body.shoulder, body)
-    lean = (upper * line.conj()).imag
-    return Posture(_sign(ahead[0]), _sign(lean[0]), _sign(np.sin(_model_angles(arm, joints[None])[4, 0])))
+    q1, q2, _, _, q5, _ = _model_angles(arm, joints[None])[:, 0]
+    wx, wy, wz = hand(arm, joints[None])[3, :, 0]
+    ahead = wx * np.cos(q1) + wy * np.sin(q1)
+    # (up, ahead) of the upper arm and of the line from shoulder to wrist
+    lean = np.sin(q2) * (wz - arm.c1) - np.cos(q2) * (ahead - arm.a1)
+    return Posture(*(-1.0 if value < 0 else 1.0 for value in (ahead, lean, np.sin(q5))))
 
 
 def branch_of(arm: ArmGeometry, joints: Array) -> int:
@@ -186,16 +187,3 @@ def with_turns(joints: Array, start: Array) -> Array:
         turns = np.nan_to_num(np.rint(np.diff(angles, prepend=begin) / TURN))
         angles -= TURN * np.cumsum(turns, out=turns)
     return joints
-
-
-def _in_plane(vector: Array, body: Skeleton) -> Array:
-    """A vector in the arm's vertical plane as up + i ahead."""
-    return np.asarray(vector[2] + 1j * _dot(vector, body.forward))
-
-
-def _sign(value: float) -> float:
-    return -1.0 if value < 0 else 1.0
-
-
-def _dot(a: tuple[Array, Array, Array] | Array, b: Array) -> Array:
-    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])

@@ -88,6 +88,8 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
 def joints_stated(robot: Robot, motion: Motion, track: Track) -> Iterator[str]:
     """The joints at every breakpoint must lie on the path that is followed from the first one."""
     off = np.abs(track.joints[list(track.path.knots)] - motion.joints)
+    if not (off > JOINT_TOLERANCE).any():
+        return
     for joint, name in enumerate(robot.joint_names):
         k = int(np.argmax(np.nan_to_num(off[:, joint])))
         if off[k, joint] > JOINT_TOLERANCE:

@@ -92,7 +92,8 @@ class Track:
     @cached_property
     def path_steps(self) -> Array:
         """Path distance between neighbouring samples [m], shape (N - 1,)."""
-        return np.abs(np.diff(self.path.standoff))
+        steps = np.diff(self.path.standoff)
+        return np.abs(steps, out=steps)
 
     @cached_property
     def distance(self) -> Array:
@@ -115,11 +116,18 @@ def legs(profile: Profile, samples: int) -> Path:
     lengths = np.abs(np.diff(profile.standoff))
     steps = np.maximum(LEAST_STEPS, np.rint(lengths / lengths.sum() * (samples - 1))).astype(int)
 
-    def spread(values: Array) -> Array:
-        pieces = [np.linspace(values[k], values[k + 1], n, endpoint=False) for k, n in enumerate(steps)]
-        return np.concatenate([*pieces, values[-1:]])
-
     knots = tuple(int(k) for k in np.concatenate([[0], np.cumsum(steps)]))
+    numbers = np.arange(steps.max(), dtype=float)
+
+    def spread(values: Array) -> Array:
+        found = np.empty(knots[-1] + 1)
+        for k, n in enumerate(steps):
+            piece = found[knots[k] : knots[k + 1]]
+            np.multiply(numbers[:n], (values[k + 1] - values[k]) / n, out=piece)
+            piece += values[k]
+        found[-1] = values[-1]
+        return found
+
     return Path(spread(profile.standoff), spread(profile.psi), knots, knots[int(np.argmin(profile.standoff))])
 
 
@@ -138,9 +146,10 @@ def blend(profile: Profile, k: int, radius: float, samples: int) -> Path:
     middle, before, after = (np.array([profile.standoff[i], profile.psi[i]]) for i in (k, k - 1, k + 1))
     sides = [end - middle for end in (before, after)]
     radius = min(radius, *(abs(side[0]) / 2 for side in sides))
-    t = np.linspace(0.0, 1.0, samples)[:, None]
+    t = np.linspace(0.0, 1.0, samples)
     entry, leave = (middle + side * (radius / abs(side[0])) for side in sides)
-    standoff, psi = ((1 - t) ** 2 * entry + 2 * t * (1 - t) * middle + t**2 * leave).T
+    first, between, last = (1 - t) ** 2, 2 * t * (1 - t), t**2
+    standoff, psi = (a * first + b * between + c * last for a, b, c in zip(entry, middle, leave, strict=True))
     # on one leg the whole blend lies before or behind the corner
     at_corner = k == int(np.argmin(profile.standoff))
     corner = int(np.argmin(standoff)) if at_corner else (samples if sides[0][0] > 0 else -1)
