@@ -35,7 +35,12 @@ def rules_of(drilled, *, min_rate, most_cost=80.0, looks=8):
     return Rules(hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), looks)
 
 
-NO_TERMS = np.zeros((MOST_TERMS, TERM)), 1.0
+def looks_at(looks):
+    return np.array([kernels.share(looks, 0, look) for look in range(looks)])
+
+
+def no_terms(looks):
+    return np.zeros((MOST_TERMS, TERM)), 1.0, looks_at(looks)
 
 
 def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, looks=8):
@@ -46,7 +51,9 @@ def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, looks=8):
     legs, known, _, _, room, _ = _room()
     legs[0, kernels.LOW], legs[0, kernels.HIGH] = slopes
     model = tree.models[posture]
-    left, _ = bound_legs.examine(model, rules, NO_TERMS, np.array(psi), legs, known, 1, groups, np.zeros(0), room)
+    left, _ = bound_legs.examine(
+        model, rules, no_terms(looks), np.array(psi), legs, known, 1, groups, np.zeros(0), room
+    )
     return (legs[0], known[0]) if left else None
 
 
@@ -112,8 +119,8 @@ def check_weights(rng, drilled):
     def row_of(psi, slopes):
         rows, known, _, _, room, _ = _room()
         rows[0, kernels.LOW], rows[0, kernels.HIGH] = slopes
-        weights = terms, of_travel
-        left, _ = bound_legs.examine(model, rules, weights, np.array(psi), rows, known, 1, 1, np.zeros(0), room)
+        aim = terms, of_travel, looks_at(looks)
+        left, _ = bound_legs.examine(model, rules, aim, np.array(psi), rows, known, 1, 1, np.zeros(0), room)
         return rows[0].copy() if left else None
 
     row = row_of(psi, slopes)
@@ -178,13 +185,12 @@ class TestABox:
                 legs[0, kernels.LOW] = legs[0, kernels.HIGH] = slope
                 model = tree.models[posture]
                 left, _ = bound_legs.examine(
-                    model, rules, NO_TERMS, np.array([psi, psi]), legs, known, 1, 1, np.zeros(0), room
+                    model, rules, no_terms(8), np.array([psi, psi]), legs, known, 1, 1, np.zeros(0), room
                 )
                 truth = boxes.leg(drilled, posture, psi, slope)
                 if truth is None or not left:
                     continue
-                at = np.array([kernels.share(8, 0, j) for j in range(8)])
-                for j, share in enumerate(at):
+                for j, share in enumerate(looks_at(8)):
                     s = share * hole.depth
                     theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, s, psi + slope * s)
                     branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)

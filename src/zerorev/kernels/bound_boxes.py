@@ -47,6 +47,34 @@ def share(looks, group, look):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def place_along(rows, inputs, rules, psi, slope, low, high):  # type: ignore[no-untyped-def]
+    """Fill in the inputs of the tape `signs` for one leg, at LANES stand-offs spread evenly over it.
+
+    Args:
+        rows: of the tape, shape (R, 2 * LANES).
+        inputs: which of them are inputs, shape (10,).
+        rules: whose threshold counts.
+        psi: spin at the target [rad].
+        slope: [rad/m].
+        low: room, shape (LANES,).
+        high: room, shape (LANES,).
+    """
+    for lane in range(LANES):
+        s = rules.depth * (lane + 0.5) / LANES
+        low[lane], high[lane] = psi + s * slope - EDGE, psi + s * slope + EDGE
+        c, sine = cos_sin(psi + s * slope)
+        _fill(rows, inputs[_STANDOFF], lane, s, s)
+        _fill(rows, inputs[_SLOPE], lane, slope, slope)
+        _fill(rows, inputs[_COS_C], lane, c - EDGE, c + EDGE)
+        _fill(rows, inputs[_SIN_C], lane, sine - EDGE, sine + EDGE)
+        _fill(rows, inputs[_SLOPE_C], lane, slope, slope)
+        _fill(rows, inputs[_HALF_PSI], lane, 0.0, 0.0)
+        _fill(rows, inputs[_HALF_SLOPE], lane, 0.0, 0.0)
+        _fill(rows, inputs[_THRESHOLD], lane, rules.min_rate, rules.min_rate)
+    cos_sin_over(low, high, rows[inputs[_COS]], rows[inputs[_SIN]])
+
+
+@kernel
 def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, spread, low, high):  # type: ignore[no-untyped-def]
     """Fill in the inputs of a tape for a few boxes.
 

@@ -43,13 +43,13 @@ FIRST_TURN = 1.5 * np.pi  # [rad] of twist, to which the stand-offs of steeper l
 
 
 @kernel
-def examine(formulas, rules, weights, psi, legs, known, count, groups, cuts, room):  # type: ignore[no-untyped-def]
+def examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room):  # type: ignore[no-untyped-def]
     """Examine boxes of legs, and close the ranks of those that are left after each group of stand-offs.
 
     Args:
         formulas: of the posture.
         rules: what is asked.
-        weights: terms and whether they are added to the travel, see `bound_multipliers.weigh`.
+        aim: terms, whether they are added to the travel, and the first looks, see `bound_multipliers`.
         psi: interval of spins at the target, shape (2,).
         legs: in and out, boxes, shape (N, COLUMNS).
         known: out, shape (N, KNOWN, 6).
@@ -71,7 +71,7 @@ def examine(formulas, rules, weights, psi, legs, known, count, groups, cuts, roo
     for group in range(groups + more):
         for j in range(looks_of):
             if group < groups:
-                standoffs[j] = rules.depth * share(looks_of, group, j)
+                standoffs[j] = rules.depth * (aim[2][j] if group == 0 else share(looks_of, group, j))
             else:
                 standoffs[j] = rules.depth * cuts[min(looks_of * (group - groups) + j, cuts.shape[0] - 1)]
         for first in range(0, count, boxes):
@@ -82,9 +82,7 @@ def examine(formulas, rules, weights, psi, legs, known, count, groups, cuts, roo
                 alive[n] = judge_signs(formulas, group == 0, rules, box, group < groups, known[n])
                 alive[n] = alive[n] and _least_cost(rules, known[n]) <= rules.most_cost + 1e-9
             if group == 0:
-                examine_travel(
-                    formulas, rules, weights, psi, legs, known, first, some, standoffs, alive, swept, low, high
-                )
+                examine_travel(formulas, rules, aim, psi, legs, known, first, some, standoffs, alive, swept, low, high)
         looks += count
         count = _closed(legs, known, count, alive)
         if count == 0:

@@ -9,7 +9,8 @@ them all where it is positive.
 
 The multipliers of a node are those of the linear programme that its conditions make at the middle of its best pair of
 boxes. They are for its halves. A term is a condition with its multiplier: leg, joint, look, direction of the joint on
-that leg, and the multiplier of its rate [m]; where that is 0 there is none. Conventions are those of `bound_boxes`.
+that leg, and the multiplier of its rate [m]; where that is 0 there is none. A condition that is tightest within the
+leg is best seen there: next to it one of the first looks is moved. Conventions are those of `bound_boxes`.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from zerorev.kernels.bound_boxes import (
     WEIGHED,
     clear,
     place,
+    place_along,
     share,
 )  # fmt: skip
 from zerorev.kernels.intervals import DERIVATIVE, LANES, UNKNOWN, VALUE, run
@@ -46,6 +48,9 @@ LEG, JOINT, LOOK, DIRECTION, MULTIPLIER, TERM = range(6)  # columns of a term
 ROUNDING = 1e-14  # relative: more than that of the few operations here
 UNKNOWNS = 3  # spin at the target, twist of the first leg, twist of the second
 MOST_ROWS = 2 * 6 * LOOKS
+CLOSE = 0.02  # [rad] width of a node below which looks are moved
+TIGHT = 0.1  # of the greatest along the leg: what is no less may be nil at no look
+APART = 1e-3  # of the depth, between two looks
 AROUND = 4.0  # half widths of twist about a pair, within which its neighbours are to be level, too
 
 
@@ -147,7 +152,61 @@ def weighed_pair(one, other, half_psi):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: ignore[no-untyped-def]
+def goes(one, other, i):  # type: ignore[no-untyped-def]
+    """Which way a joint goes on the first leg of a motion of two boxes that does not reverse it; 0: that is open."""
+    if turns_of(one, other, i) > 0:
+        return 0
+    return int(one[MAY_FORTH, i] and other[MAY_BACK, i]) - int(one[MAY_BACK, i] and other[MAY_FORTH, i])
+
+
+@kernel
+def move_looks(formulas, rules, psi, slope, first_leg, one, other, shares, room):  # type: ignore[no-untyped-def]
+    """Move looks to where the rates of a leg are least within it.
+
+    Args:
+        formulas: of the posture.
+        rules: what is asked.
+        psi: spin at the target [rad].
+        slope: [rad/m].
+        first_leg: whether it is the first of its motion.
+        one: what is known of the first leg's box, shape (KNOWN, 6).
+        other: of the second's.
+        shares: in and out, rising, shape (LOOKS,).
+        room: two rows, each of shape (LANES,).
+    """
+    rows, (low, high), m, looks = formulas.rows, room, least_rate(rules), rules.looks
+    clear(formulas.unknown)
+    place_along(rows, formulas.inputs[0], rules, psi, slope, low, high)
+    run(formulas.signs, formulas.constants, rows, formulas.unknown)
+    for i in range(6):
+        d = float(goes(one, other, i)) * (1.0 if first_leg else -1.0)
+        if d == 0.0:
+            continue
+        at, least, most = -1, 0.0, 0.0
+        for lane in range(LANES):
+            if formulas.unknown[VALUE, lane] != 0.0:
+                at, most = -1, 0.0
+                break
+            value = d * rows[formulas.rate[0, i], lane] - m * rows[formulas.denominator[0, i], lane]
+            low[lane] = value
+            most = max(most, abs(value))
+            if at < 0 or value < least:
+                at, least = lane, value
+        if at <= 0 or at == LANES - 1 or least > TIGHT * most:
+            continue
+        # the vertex of the parabola through the least of them and its neighbours
+        bend = low[at - 1] - 2.0 * low[at] + low[at + 1]
+        place_of = (at + 0.5 + (0.5 * (low[at - 1] - low[at + 1]) / bend if bend > 0.0 else 0.0)) / LANES
+        nearest = 1
+        for j in range(2, looks - 1):
+            if abs(shares[j] - place_of) < abs(shares[nearest] - place_of):
+                nearest = j
+        if shares[nearest - 1] + APART < place_of < shares[nearest + 1] - APART:
+            shares[nearest] = place_of
+
+
+@kernel
+def find_terms(formulas, rules, psi, legs, known, pair, terms, shares, room):  # type: ignore[no-untyped-def]
     """The multipliers of a pair of boxes.
 
     Args:
@@ -158,6 +217,7 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: i
         known: shape (N, KNOWN, 6).
         pair: which two, shape (2,).
         terms: out, shape (MOST_TERMS, TERM).
+        shares: out, where the first looks are, as shares of the depth, shape (LOOKS,).
         room: two rows, each of shape (LANES,).
 
     Returns:
@@ -167,6 +227,8 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: i
     rows, unknown, standoffs = formulas.rows, formulas.unknown, np.empty(rules.looks)
     for t in range(MOST_TERMS):
         terms[t, MULTIPLIER] = 0.0
+    for j in range(rules.looks):
+        shares[j] = share(rules.looks, 0, j)
     middle = 0.5 * (psi[0] + psi[1])
     spins, boxes = np.array([middle, middle]), np.zeros((2, COLUMNS))
     cost, bound = np.zeros(UNKNOWNS), np.ones(UNKNOWNS)
@@ -179,8 +241,12 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: i
         half[1 + leg] = AROUND * 0.5 * (box[HIGH] - box[LOW]) * rules.depth
         cost[0] += 0.5 * (box[BY_PSI_LOW] + box[BY_PSI_HIGH]) * half[0]
         cost[1 + leg] = box[ALONG_SLOPE] / rules.depth * half[1 + leg]
+    if psi[1] - psi[0] < CLOSE and rules.most_cost < rules.least_weight:
+        for leg in range(2):
+            slope = boxes[leg, LOW]
+            move_looks(formulas, rules, middle, slope, leg == 0, known[pair[0]], known[pair[1]], shares, room)
     for j in range(rules.looks):
-        standoffs[j] = rules.depth * share(rules.looks, 0, j)
+        standoffs[j] = rules.depth * shares[j]
     clear(unknown)
     place(rows, formulas.inputs[1], False, rules, spins, boxes, 0, 2, standoffs, False, low, high)
     run(formulas.angles, formulas.constants[formulas.starts[1] :], rows, unknown)
@@ -188,11 +254,9 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, room):  # type: i
     at, by, spare = np.zeros((MOST_ROWS, WIDTH), dtype=np.int64), np.zeros((MOST_ROWS, WIDTH)), np.empty(MOST_ROWS)
     which, size, count = np.empty((MOST_ROWS, 4), dtype=np.int64), np.empty(MOST_ROWS), 0  # size: of a row
     for i in range(6):
-        forth = one[MAY_FORTH, i] and other[MAY_BACK, i]
-        if forth == (one[MAY_BACK, i] and other[MAY_FORTH, i]) or turns_of(one, other, i) > 0:
-            continue  # which way it goes is open, or it reverses
-        for leg in range(2):
-            d = 1.0 if forth == (leg == 0) else -1.0
+        way = goes(one, other, i)
+        for leg in range(2 if way != 0 else 0):
+            d = float(way if leg == 0 else -way)
             for j in range(rules.looks):
                 lane = leg * rules.looks + j
                 if unknown[VALUE, lane] != 0.0 or unknown[DERIVATIVE, lane] != 0.0:

@@ -39,7 +39,7 @@ def wrapped(angle):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def examine_travel(formulas, rules, weights, psi, legs, known, first, count, standoffs, alive, swept, low, high):  # type: ignore[no-untyped-def]
+def examine_travel(formulas, rules, aim, psi, legs, known, first, count, standoffs, alive, swept, low, high):  # type: ignore[no-untyped-def]
     """Judge the travel of the boxes whose tape `angles` was run."""
     some = False
     for n in range(first, first + count):
@@ -62,17 +62,17 @@ def examine_travel(formulas, rules, weights, psi, legs, known, first, count, sta
                 lane = box * rules.looks + j
                 most = max(abs(rows[row, lane]), abs(rows[row, LANES + lane]))
                 swept[i, j] = UNKNOWN if unknown[VALUE, lane] != 0.0 else most * (at[j + 1] - at[j])
-        alive[n] = judge_travel(formulas, rules, weights, psi, box, at, legs[n], known[n], swept)
+        alive[n] = judge_travel(formulas, rules, aim, psi, box, at, legs[n], known[n], swept)
 
 
 @kernel
-def judge_travel(formulas, rules, weights, psi, box, standoffs, legs, known, swept):  # type: ignore[no-untyped-def]
+def judge_travel(formulas, rules, aim, psi, box, standoffs, legs, known, swept):  # type: ignore[no-untyped-def]
     """What the angles say of a box: the least travel, how it varies over the box, and the turns that fit the limits.
 
     Args:
         formulas: whose tape `angles` was run on stand-offs from the target outwards.
         rules: whose limits count.
-        weights: terms and whether they are added to the travel, see `bound_multipliers.weigh`.
+        aim: terms, whether they are added to the travel, and the first looks, see `bound_multipliers`.
         psi: interval of spins at the target, shape (2,).
         box: which one, of those that were placed.
         standoffs: shape (looks,) [m].
@@ -83,7 +83,7 @@ def judge_travel(formulas, rules, weights, psi, box, standoffs, legs, known, swe
     Returns:
         whether a leg of the box may exist.
     """
-    looks, (terms, of_travel) = rules.looks, weights
+    looks, (terms, of_travel, _) = rules.looks, aim
     rows, first = formulas.rows, box * looks
     middle = 0.5 * (psi[0] + psi[1])
     half_psi = max(psi[1] - middle, middle - psi[0]) + EDGE

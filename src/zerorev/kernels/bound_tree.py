@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
-from zerorev.kernels.bound_boxes import GROUPS, HIGH, LOW, VALUE_OF
+from zerorev.kernels.bound_boxes import GROUPS, HIGH, LOOKS, LOW, VALUE_OF
 from zerorev.kernels.bound_legs import examine, move
 from zerorev.kernels.bound_multipliers import MOST_TERMS, TERM, find_terms
 from zerorev.kernels.bound_nodes import (
@@ -69,8 +69,8 @@ def examined(formulas, rules, tree, node, psi, legs, known, count, groups, cuts,
     before = np.empty((count if logged else 0, 2))
     for n in range(before.shape[0]):
         before[n, 0], before[n, 1] = legs[n, LOW], legs[n, HIGH]
-    weights = tree.terms[node], tree.nodes[node, NODE_OF_TRAVEL]
-    left, looks = examine(formulas, rules, weights, psi, legs, known, count, groups, cuts, room)
+    aim = tree.terms[node], tree.nodes[node, NODE_OF_TRAVEL], tree.shares[node]
+    left, looks = examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room)
     tree.counts[LOOKS_DONE] += looks
     k = 0
     for n in range(before.shape[0]):
@@ -153,7 +153,8 @@ def try_motion(formulas, rules, tree, node, one, other, work, out):  # type: ign
     _, _, legs, known, room, _ = work
     width = tree.nodes[node, NODE_HIGH] - tree.nodes[node, NODE_LOW]
     middle = 0.5 * (tree.nodes[node, NODE_LOW] + tree.nodes[node, NODE_HIGH])
-    psi, weights = np.array([middle, middle]), (tree.terms[node], tree.nodes[node, NODE_OF_TRAVEL])
+    psi = np.array([middle, middle])
+    aim = tree.terms[node], tree.nodes[node, NODE_OF_TRAVEL], tree.shares[node]
     cuts = tree.cuts[node, : tree.lists[node, CUTS]]
     ends = [0, 0, 0]
     for k in range(2):
@@ -163,9 +164,7 @@ def try_motion(formulas, rules, tree, node, one, other, work, out):  # type: ign
         for e in range(SLOPES_TRIED):
             slope = 0.5 * (low + high) + 1.2 * around * (2.0 * e / (SLOPES_TRIED - 1) - 1.0)
             legs[start + e, LOW] = legs[start + e, HIGH] = slope
-        count, looks = examine(
-            formulas, rules, weights, psi, legs[start:], known[start:], SLOPES_TRIED, GROUPS, cuts, room
-        )
+        count, looks = examine(formulas, rules, aim, psi, legs[start:], known[start:], SLOPES_TRIED, GROUPS, cuts, room)
         tree.counts[LOOKS_DONE] += looks
         ends[k + 1] = start + count
         if count == 0:
@@ -200,7 +199,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
         and the two nodes pushed last are where it came from; FULL: the tree needs more room.
     """
     legs = work[0]
-    slot, terms, of_travel = np.empty((2, 2)), np.zeros((MOST_TERMS, TERM)), 1.0
+    slot, terms, of_travel, shares = np.empty((2, 2)), np.zeros((MOST_TERMS, TERM)), 1.0, np.zeros(LOOKS)
     while True:
         if tree.counts[HEAP] == 0:
             return EMPTY if tree.values[LEFT] >= NOTHING else LEFT_OVER
@@ -229,7 +228,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
         if low < high:
             pair = np.array([first, second])
             of_travel = find_terms(
-                models[posture], rules, np.array([low, high]), legs, work[1], pair, terms, work[4][1:]
+                models[posture], rules, np.array([low, high]), legs, work[1], pair, terms, shares, work[4][1:]
             )
             tree.counts[LOOKS_DONE] += LANES // rules.looks
         found = NOTHING
@@ -245,7 +244,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
         if high - low < NARROWEST:
             tree.values[LEFT] = min(tree.values[LEFT], value)
         else:
-            _divide(tree, node, value, count, legs, terms, of_travel)
+            _divide(tree, node, value, count, legs, terms, of_travel, shares)
         if tried:
             tree.candidate[3] = posture
             tree.values[CANDIDATE_VALUE] = found
@@ -256,8 +255,8 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
 
 
 @kernel
-def _divide(tree, node, value, count, legs, terms, of_travel):  # type: ignore[no-untyped-def]
-    """Halve a node; both halves share the slopes that are left, and the multipliers."""
+def _divide(tree, node, value, count, legs, terms, of_travel, shares):  # type: ignore[no-untyped-def]
+    """Halve a node; both halves share the slopes that are left, the multipliers and the looks."""
     start, kept = tree.counts[SLOPES], 0
     for n in range(count):
         if legs[n, VALUE_OF] < NOTHING:
@@ -277,6 +276,8 @@ def _divide(tree, node, value, count, legs, terms, of_travel):  # type: ignore[n
         for t in range(MOST_TERMS):
             for k in range(TERM):
                 tree.terms[new, t, k] = terms[t, k]
+        for j in range(LOOKS):
+            tree.shares[new, j] = shares[j]
         tree.lists[new, POSTURE] = tree.lists[node, POSTURE]
         tree.lists[new, START], tree.lists[new, COUNT] = start, kept
         tree.lists[new, CUTS], tree.lists[new, PARENT] = tree.lists[node, CUTS], node

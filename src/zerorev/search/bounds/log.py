@@ -23,9 +23,10 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
     assert closed <= len(tree.closed)
     lists, rows = tree.lists[:nodes], tree.closed[:closed]
     slopes = slice(bound_nodes.CLOSED_LOW, bound_nodes.CLOSED_HIGH + 1)
-    terms = tree.terms[:nodes].copy()
-    at = [bound_boxes.share(rules.looks, 0, look) for look in range(rules.looks)]
-    terms[..., bound_multipliers.LOOK] = np.array(at)[terms[..., bound_multipliers.LOOK].astype(int)]
+    terms, shares = tree.terms[:nodes].copy(), tree.shares[:nodes, : rules.looks]
+    look = terms[..., bound_multipliers.LOOK].astype(int)
+    terms[..., bound_multipliers.LOOK] = np.take_along_axis(shares, look, axis=1)
+    moved = shares != [bound_boxes.share(rules.looks, 0, look) for look in range(rules.looks)]
     return ProofTree(
         claim=Claim(
             depth=rules.depth,
@@ -46,5 +47,5 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
         dead=rows[:, bound_nodes.CLOSED_DEAD] == 1.0,
         terms=terms,
         of_travel=tree.nodes[:nodes, bound_nodes.NODE_OF_TRAVEL] == 1.0,
-        cuts=tuple(tree.cuts[n, : lists[n, bound_nodes.CUTS]].copy() for n in range(nodes)),
+        cuts=tuple(np.append(tree.cuts[n, : lists[n, bound_nodes.CUTS]], shares[n, moved[n]]) for n in range(nodes)),
     )

@@ -59,6 +59,7 @@ class Tree(NamedTuple):
         heap: numbers of nodes, shape (N,).
         nodes: interval of spins, value, whether the terms are added to the travel (1) or refute (0), shape (N, 4).
         terms: conditions with multipliers, see `kernels.bound_multipliers`, shape (N, MOST_TERMS, TERM).
+        shares: where the first looks at a box are, as shares of the depth, shape (N, LOOKS).
         lists: posture, where its slopes start and how many they are, how many cuts, parent or -1, shape (N, 5).
         cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).
@@ -72,6 +73,7 @@ class Tree(NamedTuple):
     heap: npt.NDArray[np.int64]
     nodes: Array
     terms: Array
+    shares: Array
     lists: npt.NDArray[np.int64]
     cuts: Array
     slopes: Array
@@ -161,6 +163,7 @@ def _planted(rules: Rules, postures: list[int], twist: float, log: int) -> Tree:
         heap=np.zeros(room, dtype=np.int64),
         nodes=np.zeros((room, bound_nodes.NODE)),
         terms=np.zeros((room, bound_multipliers.MOST_TERMS, bound_multipliers.TERM)),
+        shares=np.zeros((room, bound_boxes.LOOKS)),
         lists=np.zeros((room, bound_nodes.LISTED), dtype=np.int64),
         cuts=np.zeros((room, bound_tree.MOST_CUTS)),
         slopes=np.zeros((max(4 * FIRST_ROOM, 2 * count), 2)),
@@ -171,6 +174,8 @@ def _planted(rules: Rules, postures: list[int], twist: float, log: int) -> Tree:
     )
     tree.slopes[:count, 0], tree.slopes[:count, 1] = slopes[:-1], slopes[1:]
     tree.counts[bound_nodes.SLOPES] = count
+    looks = rules.looks
+    tree.shares[:first, :looks] = [bound_boxes.share(looks, 0, look) for look in range(looks)]
     numbers = np.arange(first)
     tree.heap[:first] = numbers
     tree.nodes[:first, :2] = np.tile(np.stack([spins[:-1], spins[1:]], axis=1), (len(postures), 1))
@@ -197,8 +202,8 @@ def _grown(tree: Tree) -> Tree:
         return np.concatenate([array, np.zeros_like(array)])
 
     return tree._replace(
-        heap=doubled(tree.heap), nodes=doubled(tree.nodes), terms=doubled(tree.terms), lists=doubled(tree.lists),
-        cuts=doubled(tree.cuts),
+        heap=doubled(tree.heap), nodes=doubled(tree.nodes), terms=doubled(tree.terms), shares=doubled(tree.shares),
+        lists=doubled(tree.lists), cuts=doubled(tree.cuts),
         slopes=doubled(tree.slopes), closed=doubled(tree.closed),
     )  # fmt: skip
 
