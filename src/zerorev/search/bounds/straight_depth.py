@@ -14,7 +14,7 @@ __all__ = ["DepthBound", "bound_depth"]
 
 # shares of the deepest stroke by which a deeper one is refuted; next to a singularity a coarse bound is all there is
 DEEPER = (1e-3, 1e-2, 1e-1, 1.0)
-SHARES = (0.4, 0.6, 0.5, 0.5)  # of the boxes that are left, for each of them
+SHARES = (0.15, 0.95, 1.0, 1.0)  # of the boxes that are left, for each of them: half of all holes need but the first
 SHALLOWEST = 1e-4  # of the arm's reach: a stroke that is none
 
 
