@@ -47,6 +47,9 @@ GOOD = 0.9  # of the depth of all curves: a motion that is less deep was not fou
 SHORT = 0.96  # of that depth: where a motion is less deep the sets, too, may be at fault, which jump what is thin
 
 
+Deepest = tuple[float, Profile | None, int | None]  # depth [m], profile, branch
+
+
 class Effort(NamedTuple):
     """How closely legs are searched.
 
@@ -69,9 +72,7 @@ USUAL = Effort(ROWS, 4 * ROWS, SEGMENTS, tuple(np.deg2rad([0.05, 0.2, 1.0, 4.0])
 CLOSEST = Effort(MOST_ROWS, 0, 8 * SEGMENTS, tuple(np.deg2rad([0.02, 0.2, 1.0, 4.0]).tolist()))
 
 
-def deepest_free(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort = USUAL
-) -> tuple[float, Profile | None, int | None]:
+def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort = USUAL) -> Deepest:
     """The deepest stroke with zero reversals on free legs, and a motion that reaches it.
 
     Args:
@@ -85,7 +86,16 @@ def deepest_free(
     Returns:
         depth [m], profile and branch; 0, None, None where no stroke has zero reversals.
     """
-    best: tuple[float, Profile | None, int | None] = (0.0, None, None)
+    best, short = _deepest(robot, tool, hole, settings, effort, (0.0, None, None))
+    if short and effort.finer:
+        best, _ = _deepest(robot, tool, hole, settings, effort._replace(rows=effort.finer), best)
+    return best
+
+
+def _deepest(
+    robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort, best: Deepest
+) -> tuple[Deepest, bool]:
+    """The deepest stroke with the bound on the twist rate or a lesser one; and whether one is far short of its sets."""
     short = False
     for steepest in (settings.max_twist, *_gentler(settings.max_twist, robot.reach)):
         search = _Search(robot, tool, hole, replace(settings, max_twist=steepest), effort)
@@ -94,10 +104,7 @@ def deepest_free(
         short = short or bool(pairs and best[0] < SHORT * pairs[0].depth)
         if not pairs or best[0] > GOOD * pairs[0].depth:
             break
-    if short and effort.finer:
-        search = _Search(robot, tool, hole, settings, effort._replace(rows=effort.finer))
-        best = max(best, search.best(search.viable.pairs(best[0]), best[0]), key=lambda deepest: deepest[0])
-    return best
+    return best, short
 
 
 def _gentler(steepest: float, reach: float) -> Iterator[float]:
@@ -138,9 +145,9 @@ class _Search:
         self.beyond: Legs | None = None  # what passed a limit last
         self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.LOOKS))
 
-    def best(self, pairs: list[Pair], enough: float) -> tuple[float, Profile | None, int | None]:
+    def best(self, pairs: list[Pair], enough: float) -> Deepest:
         """The deepest motion of some pairs, if it is deeper than `enough`: depth, profile and branch."""
-        best: tuple[float, Profile | None, int | None] = (enough, None, None)
+        best: Deepest = (enough, None, None)
         done: list[Family] = []
         for pair in pairs:
             if pair.depth <= best[0]:
