@@ -42,6 +42,9 @@ def keeps(motion, settings):
     )
 
 
+SAME_DEPTH = 1e-7
+
+
 def check_agreement(drilled):
     """At 0.99 of the deepest stroke such a motion is found, at 1.02 it is not, or the stroke is raised to it."""
     deepest = deepest_as_drilled(*drilled.all).depth
@@ -56,7 +59,8 @@ def check_agreement(drilled):
         )
         if share < 1:
             assert keeps(found.motion, drilled.settings), drilled.hole.id
-            assert found.deepest.depth == deepest
+            # two ways to the same stroke, from the plan's motion or from the proof's, end a few 1e-8 apart at the most
+            assert found.deepest.depth == pytest.approx(deepest, rel=SAME_DEPTH)
     return int(found.deepest.depth > deepest)
 
 
