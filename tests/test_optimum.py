@@ -42,9 +42,6 @@ def keeps(motion, settings):
     )
 
 
-SAME_DEPTH = 1e-7
-
-
 def check_agreement(drilled):
     """At 0.99 of the deepest stroke such a motion is found, at 1.02 it is not, or the stroke is raised to it."""
     deepest = deepest_as_drilled(*drilled.all).depth
@@ -59,8 +56,7 @@ def check_agreement(drilled):
         )
         if share < 1:
             assert keeps(found.motion, drilled.settings), drilled.hole.id
-            # two ways to the same stroke, from the plan's motion or from the proof's, end a few 1e-8 apart at the most
-            assert found.deepest.depth == pytest.approx(deepest, rel=SAME_DEPTH)
+            assert found.deepest.depth == deepest
     return int(found.deepest.depth > deepest)
 
 
@@ -92,7 +88,7 @@ class TestCases:
 
 class TestAgreement:
     def test_on_some_random_holes(self):
-        for seed in (0, 3):
+        for seed in (0, 3, 1009):  # at the last the plan's motion is deeper than what the search alone finds
             check_agreement(random_hole(seed, narrowed=seed % 4 == 3))
 
     @pytest.mark.long

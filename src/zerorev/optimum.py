@@ -72,7 +72,7 @@ def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[
     """
     pool = _Pool(robot, tool, hole, settings, log)
     best = pool.best()
-    pool.deepest = pool.bounded(pool.raised(best))
+    pool.settle(best)
     if best is not None and best.reversals and pool.deepest.depth >= pool.hole.depth:
         best = pool.best()  # what the proof of the depth has found can be cut short
     best, optimality = pool.proven(best)
@@ -99,11 +99,12 @@ def deepest_as_drilled(
         log: likewise.
     """
     pool = _Pool(robot, tool, hole, settings, log)
-    if pool.deepest.depth >= pool.hole.depth:
-        return pool.as_drilled(pool.bounded(pool.deepest))
-    found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
-    best = pool.order.best(one for one in found if one is not None and pool.allows(one))
-    return pool.as_drilled(pool.bounded(pool.raised(best)))
+    best = None
+    if pool.deepest.depth < pool.hole.depth:
+        found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
+        best = pool.order.best(one for one in found if one is not None and pool.allows(one))
+    pool.settle(best)
+    return pool.as_drilled(pool.deepest)
 
 
 def alternatives(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> list[Candidate]:
@@ -282,6 +283,16 @@ class _Pool:
         """Keep the trees of a proof, at the arm's own size."""
         if self.log is not None and trees is not None:
             self.log += [tree.resized(self.size) for tree in trees]
+
+    def settle(self, best: Candidate | None) -> None:
+        """Bound the deepest stroke, and where the best motion is deeper all the same, bound that.
+
+        The first bound does not depend on the depth of the hole, so that all depths of a hole get the same answer.
+        """
+        self.deepest = self.bounded(self.deepest)
+        raised = self.raised(best)
+        if raised is not self.deepest:
+            self.deepest = self.bounded(raised)
 
     def raised(self, best: Candidate | None) -> Deepest:
         """The deepest stroke, the best motion taken into account."""
