@@ -1,11 +1,11 @@
 """Boxes of pairs of legs, bounded with several conditions at once (theory §3).
 
 A box is dead if one condition fails all over it. But next to the least travel it is conditions that keep it from being
-less; boxes reach across them, and the travel beyond counts as if it were to be had. So conditions g_k >= 0 are added to
-the travel f with multipliers l_k >= 0: f - sum l_k g_k is no more than f wherever all conditions are kept, whatever the
-multipliers are; with Lagrange's it is level at the optimum, and what a box of width w leaves open is of the order of
-w^2 instead of w. Where a few conditions contradict each other the same sum refutes without f (Farkas): no motion keeps
-them all where it is positive.
+less; boxes reach across them, and the travel beyond, where no motion may go, counts. So conditions g_k >= 0 are added
+to the travel f with multipliers l_k >= 0: f - sum l_k g_k is no more than f wherever all conditions are kept, whatever
+the multipliers are; with Lagrange's it is level at the optimum, and what a box of width w leaves open is of the order
+of w^2 instead of w. Where a few conditions contradict each other the same sum refutes without f (Farkas): no motion
+keeps them all where it is positive.
 
 The multipliers of a node are those of the linear programme that its conditions make at the middle of its best pair of
 boxes. They are for its halves. A term is a condition with its multiplier: leg, joint, look, direction of the joint on
@@ -62,6 +62,14 @@ def turns_of(one, other, i):  # type: ignore[no-untyped-def]
     if turns == 0 and not ((one[MAY_FORTH, i] and other[MAY_BACK, i]) or (one[MAY_BACK, i] and other[MAY_FORTH, i])):
         turns = 1
     return turns
+
+
+@kernel
+def goes(one, other, i):  # type: ignore[no-untyped-def]
+    """Which way a joint goes on the first leg of a motion of two boxes that does not reverse it; 0: that is open."""
+    if turns_of(one, other, i) > 0:
+        return 0
+    return int(one[MAY_FORTH, i] and other[MAY_BACK, i]) - int(one[MAY_BACK, i] and other[MAY_FORTH, i])
 
 
 @kernel
@@ -137,8 +145,7 @@ def terms_hold(terms, one, other):  # type: ignore[no-untyped-def]
             continue
         some, i = True, int(terms[t, JOINT])
         forth = (terms[t, DIRECTION] > 0.0) == (terms[t, LEG] == 0.0)  # on the first leg; on the second it comes back
-        contrary = one[MAY_BACK, i] and other[MAY_FORTH, i] if forth else one[MAY_FORTH, i] and other[MAY_BACK, i]
-        if contrary or turns_of(one, other, i) > 0:
+        if goes(one, other, i) != (1 if forth else -1):
             return False
     return some
 
@@ -149,14 +156,6 @@ def weighed_pair(one, other, half_psi):  # type: ignore[no-untyped-def]
     a, b = WEIGHED, WEIGHED + PER_LEG
     varies = max(abs(one[a + 1] + other[b + 1]), abs(one[a + 2] + other[b + 2])) * half_psi + one[a + 3] + other[b + 3]
     return one[a] + other[b] - varies * (1.0 + 1e-12)
-
-
-@kernel
-def goes(one, other, i):  # type: ignore[no-untyped-def]
-    """Which way a joint goes on the first leg of a motion of two boxes that does not reverse it; 0: that is open."""
-    if turns_of(one, other, i) > 0:
-        return 0
-    return int(one[MAY_FORTH, i] and other[MAY_BACK, i]) - int(one[MAY_BACK, i] and other[MAY_FORTH, i])
 
 
 @kernel

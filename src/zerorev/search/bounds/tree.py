@@ -18,8 +18,7 @@ __all__ = ["Rules", "Search", "model_limits"]
 SPINS, SLOPES = 32, 8  # intervals to begin with, of spins and of slopes within a turn either way
 FAR = 1.4 * np.pi  # [rad] of twist, of intervals beyond a turn: with the spins of a node less than a turn in all
 FIRST_ROOM = 4096
-ASPECT = 1.0  # [1/rad] times the travel: width of boxes in twist over that in spin, at the most 1
-LEAST_ASPECT = 0.01
+LEAST_ASPECT = 0.01  # of boxes: their width in twist over that in spin
 
 
 class Rules(NamedTuple):
@@ -117,7 +116,7 @@ class Search:
 
     @property
     def looks(self) -> int:
-        """Looks so far, each at 8 stand-offs of one box."""
+        """Looks so far, each at `rules.looks` stand-offs of one box."""
         return int(self.tree.counts[bound_nodes.LOOKS_DONE])
 
     @property
@@ -129,7 +128,8 @@ class Search:
 
     def improve(self, cost: float, travel: float) -> None:
         """Take note of a motion that is better than the best so far."""
-        aspect = min(1.0, max(ASPECT * travel, LEAST_ASPECT)) if travel > 0.0 else self.rules.aspect
+        # twists are of the size of the travel, in rad; spins of that of 1
+        aspect = min(1.0, max(travel, LEAST_ASPECT)) if travel > 0.0 else self.rules.aspect
         self.rules = self.rules._replace(most_cost=min(cost, self.rules.most_cost), aspect=aspect)
         self.tree.values[bound_nodes.BEST] = bound_nodes.BIG * cost + travel
 
