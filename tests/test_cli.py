@@ -294,6 +294,7 @@ class TestExport:
         out, err = capsys.readouterr()
         assert "DEF drill" in target.read_text()
         assert "far [away]" in out
+        assert out.index("incomplete") < out.index("written to")
         assert str(target) in out
         assert err == ""
 

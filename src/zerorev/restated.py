@@ -19,7 +19,7 @@ from zerorev.evaluation import Evaluation
 from zerorev.model._units import deg_per_mm, mm
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
+from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
 from zerorev.model.plan_data import answer_data
 from zerorev.model.plan_differences import differ, fields_differ, findings_differ, leaves
 from zerorev.model.robot import Robot
@@ -34,7 +34,6 @@ from zerorev.workers import Workers
 __all__ = ["Checked", "check_hole", "check_plan"]
 
 BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
-OF_THE_PART = "unfinished"  # a finding that reading a part adds to it
 OF_A_PROOF = "tolerance"  # one that a certificate adds
 
 
@@ -79,7 +78,7 @@ def check_plan(stated: Plan, *, workers: int = 1, progress: Callable[[int, int],
         workers: processes to run it on; the outcome is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
     """
-    said = _but(stated.findings, OF_THE_PART), lever_findings(stated.robot, stated.tool)
+    said = _but(stated.findings, UNFINISHED), lever_findings(stated.robot, stated.tool)
     wrong = [_error(message, None) for message in findings_differ(*said)]
     holes: list[HolePlan] = []
     if progress:

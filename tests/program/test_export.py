@@ -53,6 +53,17 @@ def test_failed_holes_can_be_left_out(failed, published, plan_of, krl):
     assert (finding.level, finding.hole) == ("warning", "position 2")
     assert "joint 3 reverses" in finding.message
     assert "warning:  hole position 2: left out of the program" in exported.text
+    assert exported.holes == 2
+    (finding,) = [finding for finding in exported.findings if finding.kind == "incomplete"]
+    assert finding.message == "only 2 of 3 holes are in the program; left out: hole position 2"
+    assert "warning:  only 2 of 3 holes are in the program" in exported.text
+
+
+def test_holes_that_the_plan_lacks_are_named_in_the_program(published, plan_of, spoil):
+    missing = Finding("warning", "unfinished", "only 1 of 3 holes planned; missing: holes a, b")
+    exported = export(spoil(plan_of(published(1)), findings=(missing,)))
+    assert missing in exported.findings
+    assert "warning:  only 1 of 3 holes planned; missing: holes a, b" in exported.text
 
 
 def test_nothing_left_is_refused(failed, plan_of):

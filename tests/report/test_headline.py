@@ -53,7 +53,8 @@ def test_a_motion_in_hand_takes_the_place_of_the_planned_one(published):
     found = line(plan, answer, seen)
     assert (found.after, found.verdict, found.tone) == (seen.score.reversals, "by hand, not checked", "warn")
     assert found.travel == pytest.approx(np.rad2deg(seen.score.travel))
-    assert found.margin == pytest.approx(40)
+    assert line(plan, answer).margin == pytest.approx(40)
+    assert found.margin is None  # of the plan, and not of this motion
     lost = look(plan.robot, plan.tool, hole, Profile.straight(hole.depth, 3.0, 3.0, 3.0), 4, plan.settings)
     assert not lost.runs
     found = line(plan, answer, lost)

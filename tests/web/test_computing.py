@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import re
 import threading
 import time
 from dataclasses import replace
@@ -64,6 +65,24 @@ def test_deepest_of_all_holes(job):
     assert state.strokes == "deepest"
     for hole in job.holes:
         assert state.answers[hole.id].hole.depth == plan_deepest(job.robot, job.tool, hole).hole.depth
+
+
+def test_all_holes_say_at_the_end_what_they_came_to(job):
+    asked = replace(job, holes=(job.holes[1], replace(job.holes[0], id="far", target=np.array([9.0, 0.0, 0.5]))))
+
+    async def run():
+        work = Work(Session(opened_job(asked)))
+        computing.plan(work, asked.holes)
+        await until(lambda: not work.busy)
+        said = work.session.state.outcome
+        computing.plan(work, asked.holes[:1])
+        assert work.session.state.outcome is None  # it was of the work before
+        await until(lambda: not work.busy)
+        return said, work.session.state
+
+    said, state = asyncio.run(run())
+    assert re.fullmatch(r"2 holes planned in \d+ s: 1 without a reversal, 1 without a motion\.", said)
+    assert state.outcome is None  # of one hole, its own line says it all
 
 
 def test_keeps_and_certifies_a_motion_in_hand(job):

@@ -104,6 +104,19 @@ def test_the_filter_lets_through_what_matches_and_says_how_many(session, told):
     assert words == ["1 of 4", "1 of 4", "4 holes"]
 
 
+def test_findings_of_other_holes_are_counted(session):
+    hole, other, *_ = session.state.job.holes
+    planned = HolePlan(hole, "planned", 0.1)
+    state = answered(session.state, planned, lost(other))
+    rows = view._rows(state, {}, None)
+    assert "no findings for this hole" in view._words(hole, planned)
+    assert "1 other hole has warnings or errors" in view._others(rows, hole.id)
+    assert view._others(rows, other.id) == ""
+    rows = view._rows(answered(state, lost(session.state.job.holes[2])), {}, None)
+    assert "2 other holes have" in view._others(rows, hole.id)
+    assert "1 other hole has" in view._others(rows, other.id)
+
+
 def test_findings_are_shown_as_text_and_never_as_markup(session):
     hole = session.state.job.holes[0]
     words = view._words(hole, lost(hole))

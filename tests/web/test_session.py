@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
+import pytest
+
+from zerorev.model.job import Job
+from zerorev.model.profile import Profile
 from zerorev.web.session import Session
-from zerorev.web.state import State
+from zerorev.web.state import State, Steered, opened_job, selected, steered, with_hole, without_hole
 
 
 def test_views_are_told_of_changes_and_of_nothing_else():
@@ -51,3 +55,70 @@ def test_two_sessions_share_nothing():
     one.change(State(selected="a"))
     assert other.state.selected is None
     assert not told
+
+
+@pytest.fixture
+def session(robot, tool, positions):
+    """Of the three published positions."""
+    return Session(opened_job(Job(robot, tool, tuple(each.hole for each in positions))))
+
+
+def motion(spin: float) -> Steered:
+    return Steered(Profile.straight(0.05, spin, 0.0, 0.0), 4)
+
+
+def test_edits_and_drags_are_one_history_there_and_back(session):
+    first = session.state
+    session.change(without_hole(first, first.job.holes[2].id))
+    edited, drag = session.state, object()
+    for spin in (0.1, 0.2, 0.3):  # a drag is told in pieces
+        session.change(steered(session.state, motion(spin)), of=drag)
+    dragged = session.state
+    session.change(steered(session.state, motion(0.4)), of=object())
+    session.undo()
+    assert session.state.steered is dragged.steered
+    session.undo()
+    assert (session.state.job, session.state.steered) == (edited.job, None)
+    session.undo()
+    assert session.state.job is first.job
+    assert not session.can_undo
+    session.undo()
+    assert session.state.job is first.job
+    for _ in range(3):
+        assert session.can_redo
+        session.redo()
+    assert not session.can_redo
+    assert session.state.job is edited.job
+    assert session.state.steered.profile.psi[0] == 0.4
+    session.undo()
+    session.change(with_hole(session.state, first.job.holes[2]))
+    assert not session.can_redo  # another way was taken
+
+
+def test_a_motion_that_was_let_go_by_looking_elsewhere_comes_back(session):
+    session.change(steered(session.state, motion(0.1)))
+    session.change(selected(session.state, session.state.job.holes[1].id))
+    assert session.state.steered is None
+    session.undo()
+    assert session.state.selected == session.state.job.holes[0].id
+    assert session.state.steered.profile.psi[0] == 0.1
+
+
+def test_looking_at_holes_is_no_step(session):
+    session.change(selected(session.state, session.state.job.holes[1].id))
+    assert not session.can_undo
+
+
+def test_a_drag_that_is_dropped_leaves_no_step(session):
+    drag = object()
+    session.change(steered(session.state, motion(0.1)))
+    kept = session.state.steered
+    session.change(steered(session.state, motion(0.2)), of=drag)
+    session.drop(object())
+    session.drop(None)
+    assert session.state.steered is not kept
+    session.drop(drag)
+    assert session.state.steered is kept
+    session.undo()
+    assert session.state.steered is None
+    assert not session.can_undo

@@ -11,6 +11,7 @@ from zerorev.jobs import plan_job
 from zerorev.model.files import plan_to_json
 from zerorev.model.job import Job, Settings
 from zerorev.planning import plan, plan_deepest
+from zerorev.web.session import undone
 from zerorev.web.state import (
     Progress,
     State,
@@ -22,7 +23,6 @@ from zerorev.web.state import (
     selected,
     shown,
     steered,
-    undone,
     with_hole,
     with_holes,
     with_settings,
@@ -151,6 +151,27 @@ def test_taking_an_edit_back_keeps_what_was_found_since_and_holds(job, planned, 
     assert list(back.answers) == [job.holes[1].id]
     assert back.progress is since.progress  # work goes on
     assert not undone(with_settings(state, Settings(min_rate=0.0)), before).answers
+
+
+def test_a_motion_kept_by_hand_is_given_back_by_an_undo_and_by_a_redo(planned):
+    """What planning finds meanwhile takes its place no more than it takes the place of the plan."""
+    before = opened_plan(planned)
+    answer = planned.holes[0]
+    by_hand = replace(answer, hole=replace(answer.hole, profile=answer.motion.profile, branch=answer.motion.branch))
+    kept = answered(before, by_hand)
+    assert undone(kept, before).answers[answer.hole.id] is answer
+    assert undone(before, kept).answers[answer.hole.id] is by_hand
+    again = replace(answer)  # as after another plan of the same
+    assert undone(answered(before, again), before).answers[answer.hole.id] is again
+
+
+def test_a_plan_of_some_holes_says_which_are_missing(job, planned):
+    state = answered(opened_job(job), planned.holes[1])
+    assert state.unplanned == (job.holes[0].id, job.holes[2].id)
+    (found,) = [finding for finding in plan_of(state).findings if finding.kind == "unfinished"]
+    assert (found.level, found.hole) == ("warning", None)
+    assert found.message == f"only 1 of 3 holes planned; missing: holes {job.holes[0].id}, {job.holes[2].id}"
+    assert plan_of(opened_plan(planned)).findings == planned.findings
 
 
 def test_progress_says_how_fast_and_how_long_yet():

@@ -231,6 +231,28 @@ def test_escape_restores_what_was_before_the_drag(on_page, session):
     on_page(exchange)
 
 
+def test_a_drag_is_one_step_and_one_that_is_escaped_is_none(on_page, session):
+    async def exchange(component, do):
+        do("grab")
+        for seq in (1, 2):
+            do("drag", points=points((1, seq, 3)), seq=seq, ms=10.0)
+            await asyncio.sleep(view.SOONEST + 0.1)
+        do("drop", points=points((1, 2.5, 3)))
+        do("grab")
+        do("drag", points=points((9, 9, 9)), seq=3, ms=10.0)
+        await asyncio.sleep(view.SOONEST + 0.1)
+        do("restore")
+        assert psi_of(session.state) == pytest.approx([1, 2.5, 3])
+        session.undo()
+        assert not session.can_undo
+        shown = component.last("show_motion")
+        assert (shown["in_hand"], shown["reversals"]) == (False, 0)
+        session.redo()
+        assert np.array(component.last("show_motion")["points"])[:, 1] == pytest.approx([1, 2.5, 3])
+
+    on_page(exchange)
+
+
 def test_back_to_the_plan(on_page, session):
     async def exchange(component, do):
         do("grab")

@@ -149,8 +149,8 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
     with terminal.progress("checking", len(answer.holes)) as progress:
         program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=workers, progress=progress)
     target = output or plan.with_name(program.name + program.suffix)
-    write_text(target, program.text)
     terminal.print_lines(tables.finding_lines(program.findings))
+    write_text(target, program.text)
     terminal.say(f"program {program.name} written to {target}")
     if target.name != program.name + program.suffix:
         terminal.note(f"the controller wants this file called {program.name}{program.suffix}")

@@ -20,7 +20,7 @@ from zerorev.errors import InputError, OutputError
 from zerorev.model._units import plain
 from zerorev.model.hole import Hole
 from zerorev.model.output import as_output_error, check_file, write_pieces
-from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.plan import UNFINISHED, HolePlan, Plan
 from zerorev.model.plan_conversion import answer_from
 from zerorev.model.plan_data import answer_data, asked_data, plan_head
 from zerorev.model.plan_schema import DepthHole, PlanHole
@@ -153,7 +153,7 @@ def part_document(text: str, file: str) -> Document | None:
         raise InputError("holds no finished hole", where=file, accepted="one finished hole or more")
     head = dict(first["head"])
     message = f"only {len(entries)} of {first['holes']} holes are finished; the command that began it goes on with it"
-    finding = {"level": "error", "kind": "unfinished", "message": message, "hole": None}
+    finding = {"level": "error", "kind": UNFINISHED, "message": message, "hole": None}
     return Document(file, head | {"holes": entries, "findings": [*head["findings"], finding]})
 
 

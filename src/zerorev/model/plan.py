@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Generic, Literal, TypeVar
 
@@ -15,6 +16,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
 __all__ = [
+    "UNFINISHED",
     "Baseline",
     "Certificate",
     "Event",
@@ -29,6 +31,7 @@ __all__ = [
     "Strokes",
     "Verification",
     "Within",
+    "named_holes",
 ]
 
 V = TypeVar("V", float, Array)
@@ -36,6 +39,16 @@ V = TypeVar("V", float, Array)
 Level = Literal["error", "warning", "info"]
 LegName = Literal["plunge", "target", "retract"]
 Strokes = Literal["asked", "deepest"]
+
+UNFINISHED = "unfinished"  # kind of the finding that holes of the job are missing from the plan
+HOLES_NAMED = 6  # in one sentence; more are counted
+
+
+def named_holes(ids: Iterable[str]) -> str:
+    """`hole a`, or `holes a, b and 3 more`; an id that comes twice is named once."""
+    ids = list(dict.fromkeys(ids))
+    more = f" and {len(ids) - HOLES_NAMED:,} more" if len(ids) > HOLES_NAMED else ""
+    return f"hole{'s' if len(ids) > 1 else ''} {', '.join(ids[:HOLES_NAMED])}{more}"
 
 
 @dataclass(frozen=True)

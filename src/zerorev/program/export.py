@@ -52,12 +52,14 @@ class Exported:
         findings: warnings and infos of the preflight.
         name: of the program in the text; its file must be called `name` + `suffix`.
         suffix: with its dot.
+        holes: how many are in the program.
     """
 
     text: str
     findings: tuple[Finding, ...]
     name: str
     suffix: str
+    holes: int
 
 
 def export(
@@ -122,7 +124,8 @@ def exporting(
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))
     called = dialect.program_name(name or plan.name)
-    return Exported(dialect.write(program, called, findings, version), findings, called, dialect.suffix)
+    text = dialect.write(program, called, findings, version)
+    return Exported(text, findings, called, dialect.suffix, len(program.holes))
 
 
 def _verified(plan: Plan, workers: int) -> Generator[None, None, Plan]:

@@ -8,6 +8,7 @@ passes the singularity of those angles within the range of position 1.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -18,7 +19,7 @@ from zerorev.kinematics import tcp_pose
 from zerorev.lead_in import find_lead_in
 from zerorev.model._arrays import Array, transform
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, named_holes
 from zerorev.program.waypoints import Waypoint, waypoints, with_blends
 
 __all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals"]
@@ -147,10 +148,7 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
     if None in refused or (refused and not skip_failed) or not kept:
         reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
         raise NotExportableError(tuple(reasons) or ("the plan has no holes",))
-    holes, findings = (
-        [],
-        [Finding("warning", "skipped", f"left out of the program: {why}", hole_id) for hole_id, why in refused.items()],
-    )
+    holes, findings = [], _left_out(plan, refused)
     for hole in kept:
         moves, found = _hole_program(plan, hole)
         holes.append(moves)
@@ -168,6 +166,18 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
         holes=tuple(holes),
         findings=tuple(findings),
     )
+
+
+def _left_out(plan: Plan, refused: Mapping[str | None, str]) -> list[Finding]:
+    """Which holes of the job are missing from the program: those that the plan lacks, then those that it refuses."""
+    found = [finding for finding in plan.findings if finding.kind == UNFINISHED]
+    if refused:
+        kept, ids = len(plan.holes) - len(refused), [str(hole_id) for hole_id in refused]
+        message = f"only {kept:,} of {len(plan.holes):,} holes are in the program; left out: {named_holes(ids)}"
+        found.append(Finding("warning", "incomplete", message))
+    return found + [
+        Finding("warning", "skipped", f"left out of the program: {why}", hole_id) for hole_id, why in refused.items()
+    ]
 
 
 def refusals(plan: Plan) -> dict[str | None, str]:

@@ -28,7 +28,7 @@ class Headline:
         travel: of all joints [deg].
         slowest: rate [deg/mm] of the slowest joint that does not reverse, and the joint's name.
         depth: of the hole [mm].
-        margin: by how much it could be deeper without a reversal [mm].
+        margin: by how much it could be deeper without a reversal [mm]; not known of a motion by hand.
         branch: 0..7.
         verdict: what is known of the motion, in a few words.
         tone: how good that is.
@@ -74,7 +74,7 @@ def headline(
         travel=None if score is None else float(deg(score.travel)),
         slowest=None if slow is None else (float(deg_per_mm(slow[0])), names[slow[1]]),
         depth=float(mm(hole.depth)),
-        margin=None if answer is None or answer.deepest is None else float(mm(answer.deepest - hole.depth)),
+        margin=None if look or answer is None or answer.deepest is None else float(mm(answer.deepest - hole.depth)),
         branch=branch,
         verdict=verdict,
         tone=tone,

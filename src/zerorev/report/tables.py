@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from rich.text import Text
 
 from zerorev.model.conversion import robot_data
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Level, Plan, Score
+from zerorev.model.plan import Finding, HolePlan, Level, Plan, Score, named_holes
 from zerorev.model.robot import Robot
 
 __all__ = [
@@ -30,7 +30,6 @@ __all__ = [
 PROOFS = {"certified": "green", "undecided": "yellow", "refuted": "bold red"}
 LEVELS = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding; what is left is counted
-HOLES_NAMED = 6
 
 
 def plan_table(plan: Plan) -> Table:
@@ -91,10 +90,10 @@ def finding_lines(findings: Iterable[Finding]) -> list[Text]:
     for (level, kind), messages in sorted(kinds.items(), key=lambda entry: list(LEVELS).index(entry[0][0])):
         shown = list(messages.items())[: MESSAGES_SHOWN[level]]
         for message, holes in shown:
-            where = f"{_named(holes)}: " if holes else ""
+            where = f"{named_holes(holes)}: " if holes else ""
             lines.append(Text.assemble((f"{level:<8}", LEVELS[level]), (f"{kind:<{width}}", "bold"), where, message))
         if rest := [hole for _, holes in list(messages.items())[len(shown) :] for hole in holes]:
-            lines.append(Text.assemble(" " * (8 + width), (f"and likewise {_named(rest)}", "dim")))
+            lines.append(Text.assemble(" " * (8 + width), (f"and likewise {named_holes(rest)}", "dim")))
     return lines
 
 
@@ -118,12 +117,6 @@ def slowest(score: Score | None, settings: Settings) -> tuple[float, int] | None
     rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
     steady = [(float(rates[i]), i) for i in range(6) if score.reversals_per_joint[i] == 0]
     return min((pair for pair in steady if np.isfinite(pair[0])), default=None)
-
-
-def _named(holes: Sequence[str]) -> str:
-    holes = list(dict.fromkeys(holes))
-    more = f" and {len(holes) - HOLES_NAMED} more" if len(holes) > HOLES_NAMED else ""
-    return f"hole{'s' if len(holes) > 1 else ''} {', '.join(holes[:HOLES_NAMED])}{more}"
 
 
 def robots_table(robots: Iterable[Robot]) -> Table:

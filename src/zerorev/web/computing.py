@@ -18,6 +18,7 @@ from zerorev.errors import ZerorevError
 from zerorev.jobs import answers, workers_for
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Strokes
+from zerorev.report.outcome import outcome
 from zerorev.web.session import Session
 from zerorev.web.state import Progress, State, answered
 
@@ -25,6 +26,8 @@ __all__ = ["Take", "Work", "certify", "keep", "plan", "plan_selected"]
 
 # what the page shows once it has these results, too; None: nobody asks for them any more
 Take = Callable[[State, Sequence[Any]], State | None]
+# what is said of all of it at the end: of the state then, and how long it took [s]
+Said = Callable[[State, float], str]
 
 PAUSE = 0.2  # [s] between two changes of the page: results come in batches
 CLOSING = 2.0  # [s] that a task is given to end by itself when the app ends
@@ -87,7 +90,14 @@ class Work:
         return self._task is not None and self.session.state.progress is not None
 
     def start(
-        self, title: str, total: int, run: Callable[[], Iterable[Any]], take: Take, *, each: str = "hole"
+        self,
+        title: str,
+        total: int,
+        run: Callable[[], Iterable[Any]],
+        take: Take,
+        *,
+        each: str = "hole",
+        said: Said | None = None,
     ) -> bool:
         """Begin a task, to be called in the event loop; while another is under way, nothing is begun.
 
@@ -97,6 +107,7 @@ class Work:
             run: finds them one after the other, in a thread of its own.
             take: called in the event loop with the newest results, five times a second at most.
             each: what a result is of.
+            said: what the page says when all of it is done; None: nothing.
 
         Returns:
             whether it has begun.
@@ -111,10 +122,10 @@ class Work:
                 loop.call_soon_threadsafe(news.set)
 
         begun = Progress(title, 0, total, each)
-        self.session.change(replace(self.session.state, progress=begun, trouble=None))
+        self.session.change(replace(self.session.state, progress=begun, trouble=None, outcome=None))
         self._task = task = _Task(run, told)
         self._tasks.add(task)
-        self._following = loop.create_task(self._follow(task, news, begun, take))
+        self._following = loop.create_task(self._follow(task, news, begun, take, said))
         return True
 
     def cancel(self) -> None:
@@ -134,7 +145,7 @@ class Work:
         if self._task is not None:
             self._task.cancelled, self._task = True, None
 
-    async def _follow(self, task: _Task, news: asyncio.Event, begun: Progress, take: Take) -> None:
+    async def _follow(self, task: _Task, news: asyncio.Event, begun: Progress, take: Take, said: Said | None) -> None:
         """Hand on what the task finds, until it has ended."""
         start, done, ended = time.monotonic(), 0, False
         while not ended:
@@ -145,22 +156,27 @@ class Work:
             if task is self._task and self.busy:
                 done += len(found)
                 now = replace(begun, done=done, seconds=time.monotonic() - start)
-                self._hand_on(task, found, None if ended else now, take)
+                self._hand_on(task, found, now, take, said=said, ended=ended)
             if not ended:
                 await asyncio.sleep(PAUSE)
         self._tasks.discard(task)
 
-    def _hand_on(self, task: _Task, found: Sequence[Any], progress: Progress | None, take: Take) -> None:
-        state, trouble = self.session.state, task.trouble
+    def _hand_on(
+        self, task: _Task, found: Sequence[Any], progress: Progress, take: Take, *, said: Said | None, ended: bool
+    ) -> None:
+        state, trouble, words = self.session.state, task.trouble, None
         try:
             taken = take(state, found) if found else state
         except ZerorevError as error:
             taken, trouble = state, str(error)
-        if taken is None or progress is None:
+        if ended and said is not None and taken is not None and trouble is None:
+            words = said(taken, progress.seconds)
+        going = taken is not None and not ended
+        if not going:
             self._let_go()
-            progress = None
+        now = replace(taken or state, progress=progress if going else None, trouble=trouble, outcome=words)
         try:
-            self.session.change(replace(taken or state, progress=progress, trouble=trouble), of=task)
+            self.session.change(now, of=task)
         except Exception:  # of a view; the work goes on
             logging.getLogger("zerorev").exception("a fault in the page")
 
@@ -189,9 +205,9 @@ def plan(work: Work, holes: Sequence[Hole], strokes: Strokes = "asked") -> None:
     if job is None or not holes:
         return
     asked, workers = replace(job, holes=tuple(holes)), workers_for(len(holes), None)
-    what = "planning" if strokes == "asked" else "finding the deepest stroke of"
+    what, done = ("planning", "planned") if strokes == "asked" else ("finding the deepest stroke of", "made deepest")
     ids = [hole.id for hole in holes]
-    _answer(work, what, ids, strokes, lambda: answers(asked, strokes=strokes, workers=workers))
+    _answer(work, what, done, ids, strokes, lambda: answers(asked, strokes=strokes, workers=workers))
 
 
 def keep(work: Work) -> None:
@@ -201,7 +217,7 @@ def keep(work: Work) -> None:
         return
     given = replace(state.hole, profile=state.steered.profile, branch=state.steered.branch)
     asked = replace(state.job, holes=(given,))
-    _answer(work, "checking", [given.id], state.strokes, lambda: answers(asked))
+    _answer(work, "checking", "checked", [given.id], state.strokes, lambda: answers(asked))
 
 
 def certify(work: Work, holes: Sequence[Hole]) -> None:
@@ -218,10 +234,12 @@ def certify(work: Work, holes: Sequence[Hole]) -> None:
         for answer in plans:
             yield replace(answer, certificate=certify_hole(job.robot, job.tool, job.settings, answer))
 
-    _answer(work, "proving", [answer.hole.id for answer in plans], state.strokes, proven)
+    _answer(work, "proving", "proven", [answer.hole.id for answer in plans], state.strokes, proven)
 
 
-def _answer(work: Work, what: str, ids: Sequence[str], strokes: Strokes, run: Callable[[], Iterable[HolePlan]]) -> None:
+def _answer(
+    work: Work, what: str, done: str, ids: Sequence[str], strokes: Strokes, run: Callable[[], Iterable[HolePlan]]
+) -> None:
     """Find answers of holes of the job; each is taken if the page still asks for the same."""
     job = work.session.state.job
     assert job is not None
@@ -234,5 +252,9 @@ def _answer(work: Work, what: str, ids: Sequence[str], strokes: Strokes, run: Ca
         same = {hole.id for hole in now.holes if hole is asked.get(hole.id)}
         return answered(state, *(answer for answer in found if answer.hole.id in same), strokes=strokes)
 
+    def said(state: State, seconds: float) -> str:
+        found = (state.answers[key] for key in ids if key in state.answers)
+        return outcome(done, found, seconds, proven=done == "proven")
+
     which = f"hole {ids[0]}" if len(ids) == 1 else f"{len(ids)} holes"
-    work.start(f"{what} {which}", len(ids), run, take)
+    work.start(f"{what} {which}", len(ids), run, take, said=said if len(ids) > 1 else None)

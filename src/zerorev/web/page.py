@@ -21,6 +21,7 @@ from zerorev.web.views.empty import empty
 from zerorev.web.views.header import header
 from zerorev.web.views.holes import holes
 from zerorev.web.views.map_panel import map_panel
+from zerorev.web.views.messages import messages
 from zerorev.web.views.summary import summary
 from zerorev.web.views.twist_map import twist_map
 
@@ -31,13 +32,15 @@ HATCH = """<svg width="0" height="0" style="position:absolute" aria-hidden="true
 <pattern id="zr-hatch" width="5" height="5" patternUnits="userSpaceOnUse" patternTransform="rotate(45)">
 <line x1="0" y1="0" x2="0" y2="5" style="stroke:var(--zr-muted)" stroke-width="1.2"/></pattern></defs></svg>"""
 
-# Ctrl-Z, but in a field, which has an undo of its own
-UNDO = """event => {
-    if (event.key !== "z" || !(event.ctrlKey || event.metaKey)) return;
-    if (event.target.closest("input, textarea, select")) return;
+# Ctrl-Z, and Ctrl-Shift-Z or Ctrl-Y, wherever the focus is but in a dialog or a field, which has an undo of its own
+KEYS = """document.addEventListener("keydown", event => {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || (key !== "z" && key !== "y")) return;
+    if (event.target.closest?.("input:not([type=range]), textarea") || document.querySelector(".q-dialog")) return;
     event.preventDefault();
-    emit();
-}"""
+    const step = key === "y" || event.shiftKey ? "redo" : "undo";
+    document.querySelector(".zr-page")?.dispatchEvent(new Event(step));
+})"""
 
 View = Callable[[Session], object]
 PICTURES: tuple[tuple[str, str, View], ...] = (
@@ -61,7 +64,9 @@ def build(session: Session, work: Work) -> None:
     """
     ui.html(HATCH, sanitize=False)
     page = ui.element("div").classes("zr-page").props('tabindex="-1" data-testid="page"')
-    page.on("keydown", session.undo, js_handler=UNDO)
+    page.on("undo", session.undo, [])
+    page.on("redo", session.redo, [])
+    ui.run_javascript(KEYS)
 
     def draw() -> None:
         session.unwatch()
@@ -100,6 +105,7 @@ def _workbench(session: Session, work: Work) -> None:
             with ui.element("div").classes("zr-doings"):
                 compute(session, work)
                 downloads(session, work)
+            messages(session)
         pictures = [(_panel(name, title), view) for name, title, view in PICTURES]
         with ui.element("section").classes("zr-panel zr-holes").props('aria-label="holes, and a map around them"'):
             _tabs(session, work)

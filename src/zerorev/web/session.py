@@ -1,19 +1,21 @@
-"""One page's state over time: holds what is shown, tells the views when it changes, and knows the way back."""
+"""One page's state over time: holds what is shown, tells the views of changes, and knows the way back and forth."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from typing import Any
 
-from zerorev.web.state import State, undone
+from zerorev.model.plan import HolePlan
+from zerorev.web.state import State, answered
 
-__all__ = ["Listener", "Session", "View"]
+__all__ = ["Listener", "Session", "View", "undone"]
 
 View = Callable[[State, State], None]  # is told what was shown before, and what is now
 Listener = Callable[[Any], None]
 
-KEPT = 50  # edits that can be taken back
+KEPT = 50  # steps that can be taken back
 
 
 class Session:
@@ -33,7 +35,8 @@ class Session:
         self._views: list[View] = []
         self._listeners: list[tuple[str, Listener]] = []
         self._past: list[State] = []
-        self._edit: object = None  # what the last edit came of
+        self._future: list[State] = []
+        self._step: object = None  # what the last step came of
 
     def watch(self, view: View) -> None:
         """Have a view told of every change from now on."""
@@ -48,8 +51,8 @@ class Session:
         """Have a view told of what others tell: things of the moment, such as where the motion is played.
 
         Args:
-            what: `seek` (path distance from the corner [mm], negative on the plunge), `show_slice` (what
-                `zerorev.report.cell_data.slice_data` makes, or None), `pick_cell` (number of a cell of the slice).
+            what: `seek` (path distance from the corner [mm], negative on the plunge), `pick_cell` (number of a cell of
+                the map).
             listener: is given what is told.
         """
         self._listeners.append((what, listener))
@@ -63,25 +66,52 @@ class Session:
     def change(self, state: State, of: object = None) -> None:
         """Show another state. Each view looks itself at what of it is not the same object any more.
 
+        Another job, or another motion by hand, is a step that `undo` takes back.
+
         Args:
             state: to be shown.
-            of: what it comes of, where that changes the job bit by bit: its changes count as one edit.
+            of: what it comes of, where that changes job or motion bit by bit, as a drag does: its changes count as one
+                step.
         """
-        if self.state.job is not None and state.job is not self.state.job:
-            if of is None or of is not self._edit:
+        if self.state.job is not None and _edited(self.state, state):
+            if of is None or of is not self._step:
                 self._past = [*self._past[1 - KEPT :], self.state]
-            self._edit = of
+            self._step = of
+            self._future = []
         self._show(state)
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is an edit to take back."""
+        """Whether there is a step to take back."""
         return bool(self._past)
 
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a step that was taken back, and none since."""
+        return bool(self._future)
+
     def undo(self) -> None:
-        """Take the last edit of the job back; what has been found since stays where it still holds."""
+        """Take the last step back; what has been found since stays where it still holds."""
         if self._past:
-            self._edit = None
+            self._step = None
+            self._future.append(self.state)
+            self._show(undone(self.state, self._past.pop()))
+
+    def redo(self) -> None:
+        """Take the last `undo` back; what has been found since stays where it still holds."""
+        if self._future:
+            self._step = None
+            self._past.append(self.state)
+            self._show(undone(self.state, self._future.pop()))
+
+    def drop(self, of: object) -> None:
+        """Take a step back while it is still being made, as if it had not begun.
+
+        Args:
+            of: what it comes of; nothing is taken back where the last step came of something else.
+        """
+        if self._past and of is not None and of is self._step:
+            self._step = None
             self._show(undone(self.state, self._past.pop()))
 
     def _show(self, state: State) -> None:
@@ -92,3 +122,32 @@ class Session:
             for view in tuple(self._views):
                 if view in self._views:  # one that is told first may build the page anew
                     view(before, state)
+
+
+def _edited(before: State, after: State) -> bool:
+    """Whether the user would miss what was before: another job, or another motion by hand."""
+    return before.job is not after.job or before.steered is not after.steered
+
+
+def undone(state: State, before: State) -> State:
+    """The state before or after a step, with those answers found since that hold for it, too.
+
+    A motion that was kept by hand is an edit of its own: it takes no other answer's place, and no other takes its.
+    """
+    before = replace(before, progress=state.progress, trouble=state.trouble, outcome=state.outcome)
+    now, old = state.job, before.job
+    if now is None or old is None or now.robot is not old.robot or now.tool is not old.tool:
+        return before
+    before = replace(before, cells=state.cells)
+    if state.strokes != before.strokes or now.settings is not old.settings:
+        return before
+    since = (
+        answer
+        for key, answer in state.answers.items()
+        if key not in before.answers or not (_by_hand(answer) or _by_hand(before.answers[key]))
+    )
+    return replace(answered(before, *since, strokes=before.strokes), steered=before.steered)
+
+
+def _by_hand(answer: HolePlan) -> bool:
+    return answer.hole.profile is not None

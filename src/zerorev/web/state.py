@@ -13,7 +13,7 @@ from zerorev.jobs import unanswered
 from zerorev.maps.replan import job_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import HolePlan, Plan, Strokes
+from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ __all__ = [
     "selected",
     "shown",
     "steered",
-    "undone",
     "with_cell",
     "with_hole",
     "with_holes",
@@ -45,12 +44,7 @@ NONE: Mapping[str, HolePlan] = MappingProxyType({})
 
 @dataclass(frozen=True)
 class Steered:
-    """A motion made by hand.
-
-    Attributes:
-        profile: the spin along the path.
-        branch: 0..7.
-    """
+    """A motion made by hand: its profile, the spin along the path, and its branch 0..7."""
 
     profile: Profile
     branch: int
@@ -97,6 +91,7 @@ class State:
         strokes: whether the answers are of the strokes `asked` for or of each hole's `deepest`.
         progress: of the long work under way, or None.
         trouble: why the last work came to nothing, in one sentence, or None.
+        outcome: what the last work on many holes came to, in one sentence, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
     """
@@ -108,6 +103,7 @@ class State:
     strokes: Strokes = "asked"
     progress: Progress | None = None
     trouble: str | None = None
+    outcome: str | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
 
@@ -117,6 +113,11 @@ class State:
         if self.job is None:
             return None
         return next((hole for hole in self.job.holes if hole.id == self.selected), None)
+
+    @property
+    def unplanned(self) -> tuple[str, ...]:
+        """Ids of the holes that have no answer yet."""
+        return () if self.job is None else tuple(hole.id for hole in self.job.holes if hole.id not in self.answers)
 
     @property
     def answer(self) -> HolePlan | None:
@@ -266,29 +267,21 @@ def with_settings(state: State, settings: Settings) -> State:
     return replace(state, job=replace(state.job, settings=settings), answers=NONE, steered=None)
 
 
-def undone(state: State, before: State) -> State:
-    """The state before an edit, with those answers found since that hold for it, too."""
-    before = replace(before, progress=state.progress, trouble=state.trouble)
-    now, old = state.job, before.job
-    if now is None or old is None or now.robot is not old.robot or now.tool is not old.tool:
-        return before
-    before = replace(before, cells=state.cells)
-    if state.strokes != before.strokes or now.settings is not old.settings:
-        return before
-    return replace(answered(before, *state.answers.values(), strokes=before.strokes), steered=before.steered)
-
-
 def plan_of(state: State) -> Plan:
-    """The plan of all holes that have an answer, as the command line would write it.
+    """The plan of all holes that have an answer, as the command line would write it; a finding says which have none.
 
     Raises:
-        InputError: none has.
+        InputError: none has an answer.
     """
     if state.job is None or not state.answers:
         raise InputError("nothing is planned yet", where="plan", accepted="a planned hole or more")
     job = state.job
     holes = tuple(state.answers[hole.id] for hole in job.holes if hole.id in state.answers)
-    return unanswered(job, state.strokes, holes)
+    plan = unanswered(job, state.strokes, holes)
+    if not (missing := state.unplanned):
+        return plan
+    message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
+    return replace(plan, findings=(*plan.findings, Finding("warning", UNFINISHED, message)))
 
 
 def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:

@@ -78,8 +78,11 @@ export default {
     svg.addEventListener("pointerleave", () => this.held || this.tell(null));
     svg.addEventListener("dblclick", this.add);
     svg.addEventListener("keydown", this.key);
-    this.onEscape = (event) => event.key === "Escape" && this.held?.start && this.cancel(event);
-    window.addEventListener("keydown", this.onEscape);
+    this.onKey = (event) => {
+      if (event.key === "Escape" && this.held?.start) this.cancel(event);
+      if (event.ctrlKey || event.metaKey) this.settle(); // of an undo, which takes back what counts as let go
+    };
+    window.addEventListener("keydown", this.onKey, true);
     this.$refs.plot.addEventListener("wheel", this.wheel, { passive: false });
     this.sizes = new ResizeObserver(() => this.resize());
     this.sizes.observe(this.$refs.plot);
@@ -92,7 +95,7 @@ export default {
   unmounted() {
     this.sizes.disconnect();
     this.themes.disconnect();
-    window.removeEventListener("keydown", this.onEscape);
+    window.removeEventListener("keydown", this.onKey, true);
     clearTimeout(this.settling);
     this.letGo();
   },
@@ -346,11 +349,15 @@ export default {
     change(points, asked) {
       if (!this.settling) this.take();
       clearTimeout(this.settling);
-      this.settling = setTimeout(() => {
-        this.settling = null;
-        this.drop();
-      }, SETTLED);
+      this.settling = setTimeout(() => this.settle(), SETTLED);
       this.steer(points, asked);
+    },
+
+    settle() {
+      if (!this.settling) return;
+      clearTimeout(this.settling);
+      this.settling = null;
+      this.drop();
     },
 
     steer(points, asked) {

@@ -14,7 +14,7 @@ from nicegui.events import GenericEventArguments
 
 from zerorev import report
 from zerorev.errors import InputError
-from zerorev.report.cell_data import arm_data, holes_data, reversals_data, track_data
+from zerorev.report.cell_data import arm_data, holes_data, reversals_data, slice_data, track_data
 from zerorev.report.motion_look import held
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, shown
@@ -40,8 +40,8 @@ class CellView(
 def cell(session: Session) -> CellView:
     """Draw the cell in the current slot.
 
-    It hears `show_slice` (of `report.cell_data.slice_data`, or None), tells `pick_cell` (the number of the cell that
-    was clicked), and both hears and tells `seek` (see `Session.hear`).
+    It tells `pick_cell` (the number of the cell of the map that was clicked), and both hears and tells `seek` (see
+    `Session.hear`).
 
     Args:
         session: what is shown.
@@ -50,7 +50,6 @@ def cell(session: Session) -> CellView:
     view = CellView().classes("zr-cell-view").props('data-testid="cell"')
     sender = _Sender(session, view)
     session.watch(sender.changed)
-    session.hear("show_slice", sender.sliced)
     session.hear("seek", sender.sought)
     view.on("ready", sender.ready)
     view.on("drawn", sender.drawn)
@@ -68,7 +67,6 @@ class _Sender:
         self._is_ready = self._telling = False
         self._waits_since: float | None = None
         self._held: tuple[Any, ...] | None = None
-        self._slice: dict[str, Any] | None = None
         self._sent: object = None  # the holes that the browser has
         self._holes = throttled(self._send_holes, HOLES_APART)
         self._reversals = throttled(self._send_reversals, HOLES_APART)
@@ -82,8 +80,7 @@ class _Sender:
             self._scene(arm=arm_data(job.robot, job.tool, self._session.state.meshes))
             self._send_holes()
             self._send_motion()
-        if self._slice is not None:
-            self._view.run_method("show_slice", self._slice)
+            self._send_cells()
 
     def changed(self, before: State, after: State) -> None:
         """Send what is another object than before."""
@@ -97,6 +94,8 @@ class _Sender:
             self._holes()
         elif before.answers is not after.answers:
             self._reversals()
+        if before.cells is not after.cells:
+            self._send_cells()
         if before.selected != after.selected:
             self._scene(selected=after.selected)
         same_hole = before.hole is after.hole and old.settings is new.settings
@@ -118,12 +117,6 @@ class _Sender:
         self._session.tell("seek", float(event.args["x"]))
         self._telling = False
 
-    def sliced(self, data: dict[str, Any] | None) -> None:
-        """Another view shows cells of a map, or none any more."""
-        self._slice = data
-        if self._is_ready:
-            self._view.run_method("show_slice", data)
-
     def sought(self, x: float) -> None:
         """Another view has gone to another place of the motion."""
         if not self._telling:
@@ -143,6 +136,16 @@ class _Sender:
         state = self._session.state
         if state.job is not None and state.job.holes is self._sent:  # others are on their way, with theirs
             self._scene(reversals=reversals_data(state.job.holes, state.answers))
+
+    def _send_cells(self) -> None:
+        """The cells of the map, or that there is none."""
+        cells = self._session.state.cells
+        if cells is None:
+            self._view.run_method("show_slice", None)
+            return
+        words = [cells.words(n) for n in range(len(cells.value))]
+        data = slice_data(cells.position, cells.edges, cells.colours, words, cells.quantity.label)
+        self._view.run_method("show_slice", data)
 
     def _send_motion(self) -> None:
         if self._waits_since is not None and monotonic() - self._waits_since < UNANSWERED:

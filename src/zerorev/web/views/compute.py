@@ -17,6 +17,7 @@ from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import Progress, State, with_hole, with_settings
+from zerorev.web.views.notices import failed, note
 
 __all__ = ["compute"]
 
@@ -35,7 +36,6 @@ def compute(session: Session, work: Work) -> None:
     with ui.element("div").classes("zr-compute").props('role="group" aria-label="compute"'):
         _wishes(session, work)
         _under_way(session, work)
-        _trouble(session)
 
     def ask() -> None:
         if session.state.hole is not None and session.state.answer is None:
@@ -128,23 +128,6 @@ def _figures(progress: Progress) -> str:
     return f"{counted} · {rate_text(progress.rate, progress.each)} · {duration(progress.seconds_left)} left"
 
 
-def _trouble(session: Session) -> None:
-    """Why the last work came to nothing."""
-    with ui.element("div").classes("zr-row zr-trouble").props('role="alert" data-testid="trouble"') as row:
-        ui.icon("error_outline").props('aria-hidden="true"')
-        text = ui.label()
-        ui.button(icon="close", on_click=lambda: session.change(replace(session.state, trouble=None))).props(
-            'flat round dense aria-label="close the message"'
-        )
-
-    def draw(trouble: str | None) -> None:
-        row.set_visibility(trouble is not None)
-        text.set_text(trouble or "")
-
-    draw(session.state.trouble)
-    session.watch(lambda before, after: draw(after.trouble) if before.trouble != after.trouble else None)
-
-
 def _button(text: str, icon: str, words: str, wish: Callable[[], None]) -> ui.button:
     name = text.lower().replace(" ", "-")
     button = ui.button(text, icon=icon, on_click=wish).props(f'outline no-caps dense data-testid="{name}"')
@@ -161,7 +144,7 @@ def _plan(work: Work, holes: Sequence[Hole], strokes: Strokes) -> None:
     if len(holes) > 1:  # of many, those that have no such answer yet: a job that was stopped goes on where it was
         holes = [hole for hole in holes if strokes != state.strokes or hole.id not in state.answers]
         if not holes:
-            ui.notify("Every hole has its answer already.", classes="zr-notify")
+            note("Every hole has its answer already.")
     computing.plan(work, holes, strokes)
 
 
@@ -169,7 +152,7 @@ def _certify(work: Work, holes: Sequence[Hole]) -> None:
     try:
         computing.certify(work, holes)
     except InputError as error:
-        ui.notify(str(error), classes="zr-notify")
+        failed(str(error))
 
 
 def _legs(session: Session, legs: Any) -> None:

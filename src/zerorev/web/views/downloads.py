@@ -17,14 +17,14 @@ from zerorev.errors import NotExportableError, ZerorevError
 from zerorev.jobs import workers_for
 from zerorev.model.files import plan_to_json
 from zerorev.model.job_data import job_files
-from zerorev.model.plan import Finding, Plan
+from zerorev.model.plan import UNFINISHED, Finding, Plan
 from zerorev.model.text import json_text
 from zerorev.program.export import Exported, exporting
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import State, plan_of
 from zerorev.web.views.fields import form
-from zerorev.web.views.opener import failed
+from zerorev.web.views.notices import failed, note
 
 __all__ = ["downloads"]
 
@@ -40,11 +40,19 @@ def downloads(session: Session, work: Work) -> None:
         ui.button("Download", icon="download").classes("zr-take").props('outline no-caps dense data-testid="download"'),
         ui.menu().props('aria-label="download"'),
     ):
-        _entry("Plan (JSON)", "download-plan", lambda: _plan(session))
+        _entry("Plan (JSON)", "download-plan", lambda: _whole(session, "plan", lambda: _plan(session)))
         _entry("Robot program (KRL) …", "download-krl", lambda: _program(session, work))
         _entry("Figures of this hole (zip)", "download-figures", lambda: _figures(session, work, one=True))
-        _entry("Figures of all holes (zip)", "download-all-figures", lambda: _figures(session, work, one=False))
-        _entry("Replay (HTML, opens anywhere)", "download-replay", lambda: _replay(session, work))
+        _entry(
+            "Figures of all holes (zip)",
+            "download-all-figures",
+            lambda: _whole(session, "figures", lambda: _figures(session, work, one=False)),
+        )
+        _entry(
+            "Replay (HTML, opens anywhere)",
+            "download-replay",
+            lambda: _whole(session, "replay", lambda: _replay(session, work)),
+        )
         ui.separator()
         _entry("Job (YAML)", "download-job", lambda: _job(session))
 
@@ -57,6 +65,34 @@ def _entry(text: str, name: str, wish: Callable[[], None]) -> None:
             failed(str(error))
 
     ui.menu_item(text, on_click=asked).props(f'data-testid="{name}"')
+
+
+def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
+    """Make something of all holes; where some have no answer, only once the user has been told so and agrees."""
+    plan = plan_of(session.state)
+    missing = [finding for finding in plan.findings if finding.kind == UNFINISHED]
+    if not missing:
+        go()
+        return
+
+    def agreed() -> None:
+        dialog.close()
+        try:
+            go()
+        except ZerorevError as error:
+            failed(str(error))
+
+    count, of = len(plan.holes), len(plan.holes) + len(session.state.unplanned)
+    dialog, inside, _ = form(f"The {what} will not have all holes", "incomplete")
+    with inside:
+        _list(missing)
+        with ui.element("div").classes("zr-ends"):
+            ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
+            ui.button(f"Download with {_of(count, of)}", icon="download", on_click=agreed).props(
+                'unelevated no-caps data-testid="save-incomplete"'
+            )
+    dialog.on("hide", dialog.delete)
+    dialog.open()
 
 
 # --- at once ----------------------------------------------------------------------------------------------------------
@@ -85,7 +121,7 @@ def _job(session: Session) -> None:
 
 def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None:
     """Make the program, then show what its preflight found, or why there is none."""
-    plan = plan_of(session.state)
+    plan, unplanned = plan_of(session.state), session.state.unplanned
     workers = workers_for(len(plan.holes), None)
 
     def run() -> Iterator[Exported | NotExportableError | None]:
@@ -96,7 +132,7 @@ def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None
 
     def ready(made: Exported | NotExportableError) -> None:
         if isinstance(made, Exported):
-            _offer(made)
+            _offer(made, len(plan.holes) + len(unplanned))
         else:
             _refused(made, lambda: _program(session, work, skip_failed=True), can_skip=not skip_failed)
 
@@ -150,15 +186,16 @@ def _make(
         return state
 
     if not work.start(title, total, run, take, each=each):
-        ui.notify("Something else is under way; wait for it, or cancel it.", classes="zr-notify")
+        note("Something else is under way; wait for it, or cancel it.")
 
 
 # --- the program's dialog ---------------------------------------------------------------------------------------------
 
 
-def _offer(program: Exported) -> None:
-    """Show what the preflight found, then hand the program out."""
+def _offer(program: Exported, of: int) -> None:
+    """Show what the preflight found, and which of so many holes are missing, then hand the program out."""
     name = f"{program.name}{program.suffix}"
+    whole = program.holes == of
 
     def save() -> None:
         ui.download.content(program.text, name, "text/plain")
@@ -166,6 +203,8 @@ def _offer(program: Exported) -> None:
 
     dialog, inside, _ = form(f"Before {name} runs", "preflight", wide=True)
     with inside:
+        if not whole:
+            ui.label(f"The program drills {_of(program.holes, of)}.").classes("zr-lacking").props('role="alert"')
         if program.findings:
             ui.label("The preflight found:")
             _list(program.findings)
@@ -174,8 +213,9 @@ def _offer(program: Exported) -> None:
         ui.label("The program has not run on a robot yet: try it in T1 first.").classes("zr-muted")
         with ui.element("div").classes("zr-ends"):
             ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
-            ui.button(f"Download {name}", icon="download", on_click=save).props(
-                'unelevated no-caps autofocus data-testid="save-program"'
+            words = f"Download {name}" if whole else f"Download {name} with {_of(program.holes, of)}"
+            ui.button(words, icon="download", on_click=save).props(
+                f'unelevated no-caps {"autofocus" if whole else ""} data-testid="save-program"'
             )
     dialog.on("hide", dialog.delete)
     dialog.open()
@@ -200,6 +240,10 @@ def _refused(error: NotExportableError, leave_out: Callable[[], None], *, can_sk
                 ui.button("Leave these out", on_click=without).props('unelevated no-caps data-testid="leave-out"')
     dialog.on("hide", dialog.delete)
     dialog.open()
+
+
+def _of(count: int, of: int) -> str:
+    return f"{count:,} of {of:,} holes"
 
 
 def _list(findings: Sequence[Finding]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 from nicegui import ui
 
@@ -40,8 +41,8 @@ def _of_a_job(session: Session) -> None:
         name, machine = ui.label().classes("zr-job-name"), ui.label().classes("zr-job-machine")
     ui.element("span").classes("zr-spring")
     settings = built_when_opened(settings_dialog, session)
-    back = ui.button("Undo", icon="undo", on_click=session.undo, color=None).classes("zr-quiet").props("flat no-caps")
-    back.props('aria-label="take the last edit back (Ctrl-Z)" data-testid="undo"').tooltip("take back (Ctrl-Z)")
+    back = _step("undo", "Undo the last edit or drag (Ctrl-Z)", session.undo)
+    forth = _step("redo", "Redo (Ctrl-Shift-Z or Ctrl-Y)", session.redo)
     change = ui.button("Settings", icon="tune", on_click=settings, color=None).classes("zr-quiet").props("flat no-caps")
     change.props('data-testid="settings"')
 
@@ -50,15 +51,25 @@ def _of_a_job(session: Session) -> None:
         robot = f"{job.robot.manufacturer} {job.robot.model}".strip() or job.robot.name
         offset = wrist_offset(job.robot, job.tool) * 1e3
         machine.set_text(f"{robot}  ·  {job.tool.name}, {offset:.4g} mm off the wrist  ·  {job.settings.legs} legs")
+
+    def enable() -> None:
         back.set_enabled(session.can_undo)
+        forth.set_enabled(session.can_redo)
 
     def changed(before: State, after: State) -> None:
         if after.job is not None and before.job is not after.job:
             draw(after.job)
+        enable()
 
     if session.state.job is not None:
         draw(session.state.job)
+    enable()
     session.watch(changed)
+
+
+def _step(name: str, words: str, do: Callable[[], None]) -> ui.button:
+    button = ui.button(icon=name, on_click=do, color=None).classes("zr-quiet").props("flat round dense")
+    return button.props(f'aria-label="{words}" data-testid="{name}"').tooltip(words)
 
 
 def _theme_button(session: Session) -> None:

@@ -19,6 +19,7 @@ from zerorev.web.state import State, selected, without_hole
 from zerorev.web.throttle import throttled
 from zerorev.web.views.fields import built_when_opened
 from zerorev.web.views.hole_form import hole_dialog
+from zerorev.web.views.notices import failed, note
 from zerorev.web.views.paste_form import paste_dialog
 
 __all__ = ["holes"]
@@ -62,7 +63,7 @@ def holes(session: Session) -> None:
     table = _Table(session)
     _tools(session, table)
     table.draw()
-    _findings(session)
+    _findings(session, table)
 
 
 class _Grid(ui.aggrid):
@@ -78,7 +79,7 @@ class _Table:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        self._rows: dict[str, HoleRow] = _rows(session.state, {}, None)
+        self.rows: dict[str, HoleRow] = _rows(session.state, {}, None)
         self._wanted: Callable[[HoleRow], bool] | None = None
         self._ids: list[str] | None = None
         self.told: Callable[[str], object] = lambda text: None
@@ -100,7 +101,7 @@ class _Table:
 
     def _filter(self) -> None:
         wanted = self._wanted
-        ids = None if wanted is None else [row.id for row in self._rows.values() if wanted(row)]
+        ids = None if wanted is None else [row.id for row in self.rows.values() if wanted(row)]
         self._tell(ids)
         if ids == self._ids:
             return
@@ -110,29 +111,29 @@ class _Table:
         self._grid.run_grid_method("onFilterChanged")
 
     def _tell(self, ids: list[str] | None = None) -> None:
-        count = len(self._rows)
+        count = len(self.rows)
         self.told(f"{count} hole{'s' if count > 1 else ''}" if ids is None else f"{len(ids)} of {count}")
 
     def _picked(self, event: events.GenericEventArguments) -> None:
-        if event.args in self._rows:
+        if event.args in self.rows:
             self._session.change(selected(self._session.state, event.args))
 
     def _show_selected(self) -> None:
         chosen = self._session.state.selected
-        if chosen in self._rows:
+        if chosen in self.rows:
             self._grid.client.run_javascript(SHOW % (json.dumps(chosen), self._grid.id))
 
     def _changed(self, before: State, after: State) -> None:
         if before.job is not after.job or before.answers is not after.answers:
-            self._update(_rows(after, self._rows, before))
+            self._update(_rows(after, self.rows, before))
         if before.selected != after.selected:
             self._show_selected()
 
     def _send_rows(self) -> None:
-        self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in self._rows.values()])
+        self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in self.rows.values()])
 
     def _update(self, rows: dict[str, HoleRow]) -> None:
-        old, self._rows = self._rows, rows
+        old, self.rows = self.rows, rows
         added = [key for key in rows if key not in old]
         if [*(key for key in old if key in rows), *added] != list(rows):  # in another order, as after an undo
             self._send_rows()
@@ -179,7 +180,7 @@ def _options() -> dict[str, Any]:
              "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
                                 "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
             {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
-            {**number, "headerName": "To spare [mm]", "field": "margin", ":valueFormatter": one, "width": 108,
+            {**number, "headerName": "Margin [mm]", "field": "margin", ":valueFormatter": one, "width": 108,
              "headerTooltip": "by how much the hole could be deeper without a reversal"},
             {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 78},
             {**number, "headerName": "Depth [mm]", "field": "depth", "width": 92},
@@ -243,13 +244,13 @@ def _take_out(session: Session) -> None:
     try:
         session.change(without_hole(session.state, hole))
     except InputError as error:
-        ui.notify(f"{error.what} (accepted: {error.accepted})", position="top", classes="zr-notify zr-notify-bad")
+        failed(f"{error.what} (accepted: {error.accepted})")
     else:
-        ui.notify(f"{hole} is taken out; Ctrl-Z brings it back", position="top", classes="zr-notify")
+        note(f"{hole} is taken out; Ctrl-Z brings it back")
 
 
-def _findings(session: Session) -> None:
-    """What was found of the selected hole, in words."""
+def _findings(session: Session, table: _Table) -> None:
+    """What was found of the selected hole, in words, and on how many others there is something, too."""
     listed = (
         ui.html(sanitize=False)
         .classes("zr-findings")
@@ -257,11 +258,16 @@ def _findings(session: Session) -> None:
     )
 
     def draw() -> None:
-        listed.set_content(_words(session.state.hole, session.state.answer))
+        state = session.state
+        listed.set_content(_words(state.hole, state.answer) + _others(table.rows, state.selected))
+
+    soon = throttled(draw, 0.3)
 
     def changed(before: State, after: State) -> None:
         if before.answer is not after.answer or before.selected != after.selected:
             draw()
+        elif before.answers is not after.answers or before.job is not after.job:
+            soon()
 
     draw()
     session.watch(changed)
@@ -272,9 +278,20 @@ def _words(hole: Hole | None, answer: HolePlan | None) -> str:
         return '<p class="zr-muted">not planned yet</p>'
     found = sorted(hole_findings(answer), key=lambda finding: list(MARKS).index(finding.level))
     if not found:
-        return '<p class="zr-muted">no findings</p>'
+        return '<p class="zr-muted">no findings for this hole</p>'
     return "".join(
         f'<p><span class="zr-level zr-{finding.level}" title="{finding.level}">{MARKS[finding.level]}</span>'
         f"{escape(finding.message)}</p>"
         for finding in found
     )
+
+
+def _others(rows: Mapping[str, HoleRow], chosen: str | None) -> str:
+    """On how many other holes there are warnings or errors; the quick filter shows them."""
+    count = sum(row.findings > 0 for row in rows.values()) - (
+        chosen is not None and chosen in rows and rows[chosen].findings > 0
+    )
+    if not count:
+        return ""
+    have = "other hole has" if count == 1 else "other holes have"
+    return f'<p class="zr-others">{count:,} {have} warnings or errors: choose “with findings” above</p>'

@@ -16,12 +16,12 @@ from zerorev.maps.chunks import Chunks
 from zerorev.maps.planes import AXES
 from zerorev.maps.run import local
 from zerorev.model.map_task import NEED_DEPTH, MapTask, Question
-from zerorev.report.cell_data import slice_data
 from zerorev.report.map_slice import MapSlice, computed, plane_task, slice_of
 from zerorev.report.workspace_map import heading
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import State, with_cell
+from zerorev.web.views.notices import failed
 
 __all__ = ["map_panel"]
 
@@ -61,7 +61,6 @@ def map_panel(session: Session, work: Work) -> None:
                 ui.label(EMPTY).classes("zr-muted")
             else:
                 _shown(session, cells)
-        session.tell("show_slice", None if cells is None else _data(cells))
 
     def changed(before: State, after: State) -> None:
         if before.cells is not after.cells:
@@ -226,15 +225,10 @@ def _vector(found: Any, number: int) -> str:
     return "(" + ", ".join(f"{round(value, 3) + 0.0:g}" for value in values) + ")"
 
 
-def _data(cells: MapSlice) -> dict[str, Any]:
-    words = [cells.words(n) for n in range(len(cells.value))]
-    return slice_data(cells.position, cells.edges, cells.colours, words, cells.quantity.label)
-
-
 def _pick(session: Session, cell: Any) -> None:
     """A cell becomes a hole of the job; the page plans what is selected."""
     try:
         session.change(with_cell(session.state, int(cell)))
     except ZerorevError as error:
         words = f"{error.what}: no hole is made of it" if isinstance(error, InputError) else str(error)
-        ui.notify(words, position="top", classes="zr-notify zr-notify-bad")
+        failed(words)

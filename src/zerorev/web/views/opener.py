@@ -10,6 +10,7 @@ from zerorev.errors import ZerorevError
 from zerorev.web.gate import LARGEST
 from zerorev.web.opening import demo, opened_text
 from zerorev.web.session import Session
+from zerorev.web.views.notices import failed
 
 __all__ = ["file_picker", "open_button", "open_demo", "pick_file"]
 
@@ -77,10 +78,3 @@ def file_picker(
 def open_demo(session: Session) -> None:
     """Show the demo."""
     session.change(demo())
-
-
-def failed(message: str) -> None:
-    """Say why something could not be opened, until the user has read it."""
-    ui.notify(
-        message, position="top", timeout=0, close_button="close", classes="zr-notify zr-notify-bad", multi_line=True
-    )

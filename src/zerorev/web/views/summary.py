@@ -16,7 +16,7 @@ from zerorev.web.throttle import throttled
 __all__ = ["summary"]
 
 MARKS = {"good": "✓", "warn": "!", "bad": "✕", "plain": "○"}
-FIGURES = ("travel", "slowest joint", "depth", "to spare", "branch")
+FIGURES = ("travel", "slowest joint", "depth", "margin", "branch")
 
 
 def summary(session: Session) -> None:

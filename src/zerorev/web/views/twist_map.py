@@ -79,7 +79,7 @@ class _TwistMap:
         self.session = session
         self.choice: int | None = OWN
         self.drawn: _Wanted | None = None  # what the map was drawn of
-        self.before: Steered | None = None  # what was in hand before the drag
+        self.drag: object = None  # stands for the drag under way: all that it changes is one step for `Session.undo`
         self.pending: Steered | None = None  # what is in hand, of which the other views may not know yet
         self.passed: object = NOTHING  # what they were told of last by this map
         self.timer: asyncio.TimerHandle | None = None
@@ -131,7 +131,7 @@ class _TwistMap:
 
     def on_grab(self) -> None:
         """A drag begins."""
-        self.before = self.session.state.steered
+        self.drag = object()
 
     def on_drag(self, event: GenericEventArguments) -> None:
         """A point was moved: the count first, the other views when there is time."""
@@ -157,7 +157,7 @@ class _TwistMap:
     def on_restore(self) -> None:
         """The drag is taken back."""
         self.let_pending_go()
-        self.session.change(steered(self.session.state, self.before))
+        self.session.drop(self.drag)
         self.show_all(fit=False)  # also where the other views were not told of the drag
 
     def on_let_go(self) -> None:
@@ -174,7 +174,7 @@ class _TwistMap:
         self.choice = CHOICES[chosen]
         motion = self.motion
         if self.choice is not None and motion is not None and motion.branch != self.choice:
-            self.pending = Steered(motion.profile, self.choice)
+            self.pending, self.drag = Steered(motion.profile, self.choice), object()
             self.pass_on()
             self.show_motion(None)
         self.show_map()
@@ -199,7 +199,7 @@ class _TwistMap:
         self.stop_timer()
         if self.pending is not None:
             self.passed = self.pending
-            self.session.change(steered(self.session.state, self.pending))
+            self.session.change(steered(self.session.state, self.pending), of=self.drag)
 
     def let_pending_go(self) -> None:
         """What was in hand is so no more, or another has taken its place."""
