@@ -1,4 +1,4 @@
-"""The gate: nothing of the app answers but to its own page, which showed the token."""
+"""The gate: nothing of the app answers but to its own page, which was opened with the token."""
 
 from __future__ import annotations
 
@@ -11,14 +11,13 @@ from zerorev.web.gate import Gate
 
 PORT, TOKEN, ONCE = 8123, "a-token-that-lasts", "a-token-for-once"
 HERE = f"127.0.0.1:{PORT}"
-COOKIE = f"zerorev-{PORT}={TOKEN}"
 
 
 async def behind(scope, receive, send):
-    """An app that reads the whole of what it is sent, and says how much that was."""
+    """An app that reads the whole of what it is sent, and says how much that was, and where it was asked."""
     if scope["type"] == "websocket":
         await receive()
-        await send({"type": "websocket.accept"})
+        await send({"type": "websocket.accept", "path": scope["path"], "query": scope["query_string"]})
         return
     length, more = 0, True
     while more:
@@ -27,7 +26,7 @@ async def behind(scope, receive, send):
             raise ConnectionError("the client has gone")
         length += len(message["body"])
         more = message.get("more_body", False)
-    await send({"type": "http.response.start", "status": 200, "headers": [(b"x-mine", b"1")]})
+    await send({"type": "http.response.start", "status": 200, "headers": [(b"x-mine", b"1")], "scope": scope})
     await send({"type": "http.response.body", "body": str(length).encode()})
 
 
@@ -43,13 +42,24 @@ class Asked:
 
 
 def ask(
-    guard, method="GET", path="/", query="", *, host=HERE, origin=None, cookie=COOKIE, kind="http", body=(b"",), more=()
+    guard,
+    method="GET",
+    path="/{key}/app",
+    query="",
+    *,
+    host=HERE,
+    origin=None,
+    kind="http",
+    body=(b"",),
+    more=(),
+    gone=False,
 ):
-    """Ask something through the gate."""
+    """Ask something through the gate, behind it or at its door."""
+    path = path.replace("{key}", guard.key)
     headers = [(b"host", host.encode())] if host else []
     headers += [(b"origin", origin.encode())] if origin else []
-    headers += [(b"cookie", cookie.encode())] if cookie else []
-    scope = {"type": kind, "path": path, "query_string": query.encode(), "headers": [*headers, *more]}
+    scope = {"type": kind, "path": path, "raw_path": path.encode(), "query_string": query.encode()}
+    scope["headers"] = [*headers, *more]
     if kind == "http":
         scope["method"] = method
     pieces = list(body)
@@ -58,7 +68,9 @@ def ask(
     async def receive():
         if kind == "websocket":
             return {"type": "websocket.connect"}
-        return {"type": "http.request", "body": pieces.pop(0), "more_body": bool(pieces)}
+        if not pieces:
+            return {"type": "http.disconnect"}
+        return {"type": "http.request", "body": pieces.pop(0), "more_body": bool(pieces) or gone}
 
     async def send(message):
         sent.append(message)
@@ -67,66 +79,160 @@ def ask(
     return Asked(sent)
 
 
+def shown(key):
+    """A header in which the door shows a key."""
+    return [(gate.SHOWN_IN.encode(), key.encode())]
+
+
 @pytest.fixture
 def guard():
     """A gate before an app that answers everything."""
     return Gate(behind, PORT, TOKEN, ONCE)
 
 
-def test_the_token_gives_a_cookie_and_leaves_the_address(guard):
-    answer = ask(guard, query=f"token={TOKEN}", cookie=None)
+@pytest.fixture
+def clock(monkeypatch):
+    """The time that the gate reads [s]."""
+    now = [1000.0]
+    monkeypatch.setattr(gate.time, "monotonic", lambda: now[0])
+    return now
+
+
+def served(answer):
+    """Whether an answer is of the app behind."""
+    return answer.status == 200 and "x-mine" in answer.headers
+
+
+def test_the_token_leads_to_a_page_that_is_served_once(guard):
+    answer = ask(guard, path="/", query=f"token={TOKEN}")
     assert answer.status == 303
-    assert answer.headers["location"] == "/"
-    assert answer.headers["set-cookie"] == f"{COOKIE}; Path=/; HttpOnly; SameSite=Strict"
+    path, _, ticket = answer.headers["location"].partition("?")
+    assert path == "/"
+    assert TOKEN not in ticket
+    assert guard.key not in ticket
     assert answer.headers["cache-control"] == "no-store"
-    assert ask(guard).status == 200
+    assert "set-cookie" not in answer.headers
+    page = ask(guard, path="/", query=ticket)
+    assert served(page)
+    scope = page.sent[0]["scope"]
+    assert (scope["path"], scope["raw_path"], scope["query_string"]) == ("/", b"/", b"")
+    again = ask(guard, path="/", query=ticket)
+    assert not served(again)
+    assert guard.key not in again.body
 
 
-@pytest.mark.parametrize("path", ["/", "/_nicegui/3.18.0/static/nicegui.js", "/_nicegui_ws/socket.io/", "/favicon.ico"])
+def test_the_door_holds_no_secret(guard):
+    for answer in (ask(guard, path="/"), ask(guard, path="/", query="page=x"), ask(guard, path="/", query="token=x")):
+        assert not served(answer)
+        assert "<script>" in answer.body
+        assert not any(secret in answer.body for secret in (guard.key, TOKEN, ONCE))
+        assert answer.headers["connection"] == "close"
+    assert ask(guard, path="/").status == 200
+
+
+def test_the_door_gives_a_ticket_for_the_key(guard):
+    ours = f"http://{HERE}"
+    ticket = ask(guard, "POST", "/", origin=ours, more=shown(guard.key)).body
+    assert served(ask(guard, path="/", query=f"page={ticket}"))
+    for wrong in ("", "x", TOKEN, ticket, guard.key[:-1], "ü"):
+        assert ask(guard, "POST", "/", origin=ours, more=shown(wrong)).status == 403
+    assert ask(guard, "POST", "/", origin=ours, more=shown(guard.key) * 2).status == 403
+    for origin in (None, "null", "http://127.0.0.1:9999"):
+        assert ask(guard, "POST", "/", origin=origin, more=shown(guard.key)).status == 403
+
+
+def test_a_ticket_lasts_a_minute_and_there_are_not_many(guard, clock):
+    def tickets(count):
+        return [ask(guard, path="/", query=f"token={TOKEN}").headers["location"][2:] for _ in range(count)]
+
+    early, late = tickets(1)[0], tickets(1)[0]
+    clock[0] += gate.TICKET_LASTS - 1
+    assert served(ask(guard, path="/", query=early))
+    clock[0] += 2
+    assert not served(ask(guard, path="/", query=late))
+    many = tickets(gate.MOST_TICKETS + 1)
+    assert not served(ask(guard, path="/", query=many[0]))
+    assert served(ask(guard, path="/", query=many[1]))
+
+
 @pytest.mark.parametrize(
-    "cookie", [None, "", f"zerorev-{PORT}=", f"zerorev-{PORT}=wrong", f"zerorev-9999={TOKEN}", f"x{COOKIE}", "ü=ü"]
-)
-def test_nothing_is_answered_without_the_token(guard, path, cookie):
-    answer = ask(guard, path=path, cookie=cookie)
+    "path",
+    ["/app", "//app", "/x/app", f"/{TOKEN}/app", "/{key}", "/{key}x/app", "//{key}/app", "/x/{key}/app", "/favicon.ico",
+     "/_nicegui/3.18.0/static/nicegui.js", "/_nicegui_ws/socket.io/", "", "*", "/%00/"],
+)  # fmt: skip
+def test_nothing_is_answered_without_the_key(guard, path):
+    answer = ask(guard, path=path)
     assert (answer.status, answer.body) == (403, f"{gate.NO_TOKEN}\n")
+    assert ask(guard, "POST", path, origin=f"http://{HERE}").status == 403
+    assert ask(guard, kind="websocket", path=path, origin=f"http://{HERE}").status == "websocket.close"
+    cookies = [(b"cookie", f"zerorev-{PORT}={guard.key}; zerorev-key={guard.key}".encode())]
+    assert ask(guard, path=path, more=cookies).status == 403
 
 
-@pytest.mark.parametrize("query", ["token=wrong", "token=", "token=%00", "token=" + TOKEN[:-1], "tokens=" + TOKEN])
+def test_what_is_behind_knows_the_gate_by_its_prefix_alone(guard):
+    forged = [(b"X-Forwarded-Prefix", b"/evil"), (b"x-forwarded-for", b"1.2.3.4")]
+    answer = ask(guard, path="/{key}/a/b", query="c=d", more=forged)
+    scope = answer.sent[0]["scope"]
+    assert (scope["path"], scope["raw_path"], scope["query_string"]) == ("/a/b", b"/a/b", b"c=d")
+    prefixes = [value for name, value in scope["headers"] if name.lower().startswith(b"x-forwarded")]
+    assert prefixes == [f"/{guard.key}".encode()]
+    socket = ask(guard, kind="websocket", path="/{key}/ws", query="c=d", origin=f"http://{HERE}")
+    assert (socket.sent[0]["path"], socket.sent[0]["query"]) == ("/ws", b"c=d")
+
+
+@pytest.mark.parametrize("query", ["token=wrong", "token=%00", "token=" + TOKEN[:-1], "token=%C3%BC"])
 def test_a_wrong_token_opens_nothing(guard, query):
-    assert ask(guard, query=query, cookie=None).status == 403
+    assert ask(guard, path="/", query=query).status == 403
 
 
-def test_the_token_in_an_address_counts_on_the_first_page_alone(guard):
-    query = f"token={TOKEN}"
-    assert ask(guard, path="/_nicegui_ws/socket.io/", query=query, cookie=None).status == 403
-    assert ask(guard, "POST", query=query, cookie=None, origin=f"http://{HERE}").status == 403
-    assert ask(guard, kind="websocket", query=query, cookie=None, origin=f"http://{HERE}").status == "websocket.close"
+@pytest.mark.parametrize("query", ["", "token=", "tokens=" + TOKEN, "page=", "page=" + TOKEN])
+def test_without_a_token_there_is_the_door_alone(guard, query):
+    assert not served(ask(guard, path="/", query=query))
+
+
+def test_the_token_counts_at_the_door_alone(guard):
+    query, ours = f"token={TOKEN}", f"http://{HERE}"
+    assert ask(guard, path="/x/_nicegui_ws/socket.io/", query=query).status == 403
+    assert ask(guard, "POST", "/", query=query, origin=ours).status == 403
+    assert ask(guard, kind="websocket", path="/", query=query, origin=ours).status == "websocket.close"
 
 
 def test_the_address_that_a_browser_is_started_with_opens_once(guard):
-    assert ask(guard, query=f"token={ONCE}", cookie=None).status == 303
-    assert ask(guard, query=f"token={ONCE}", cookie=None).status == 403
-    assert ask(guard, query=f"token={TOKEN}", cookie=None).status == 303
-    assert ask(guard, query=f"token={TOKEN}", cookie=None).status == 303
+    asked = [ask(guard, path="/", query=f"token={token}").status for token in (ONCE, ONCE, TOKEN, TOKEN)]
+    assert asked == [303, 403, 303, 303]
+
+
+def test_two_gates_have_two_keys(guard):
+    other = Gate(behind, PORT, TOKEN)
+    assert other.key != guard.key
+    assert ask(guard, path=f"/{other.key}/app").status == 403
+
+
+def test_the_page_has_its_browser_keep_the_key():
+    assert '= "k-e_y";' in gate.keeping("/k-e_y")
+    assert "history.replaceState" in gate.keeping("/k-e_y")
 
 
 @pytest.mark.parametrize(
-    "host", ["", "evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}"]
-)
+    "host",
+    ["", "evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}",
+     f"localhost:{PORT}", f"[::1]:{PORT}"],
+)  # fmt: skip
 @pytest.mark.parametrize("kind", ["http", "websocket"])
 def test_another_name_for_this_machine_is_refused(guard, host, kind):
     answer = ask(guard, host=host, kind=kind, origin=f"http://{host}" if kind == "websocket" else None)
     assert answer.status == (403 if kind == "http" else "websocket.close")
+    if kind == "http":
+        assert ask(guard, path="/", query=f"token={TOKEN}", host=host).status == 403
 
 
 def test_two_hosts_are_none(guard):
     assert ask(guard, more=[(b"host", HERE.encode())]).status == 403
 
 
-@pytest.mark.parametrize("host", [HERE, f"localhost:{PORT}"])
-def test_our_own_page_may_post_and_open_sockets(guard, host):
-    assert ask(guard, "POST", host=host, origin=f"http://{host}", body=(b"ab", b"c")).body == "3"
-    assert ask(guard, kind="websocket", host=host, origin=f"http://{host}").status == "websocket.accept"
+def test_our_own_page_may_post_and_open_sockets(guard):
+    assert ask(guard, "POST", origin=f"http://{HERE}", body=(b"ab", b"c")).body == "3"
+    assert ask(guard, kind="websocket", origin=f"http://{HERE}").status == "websocket.accept"
 
 
 @pytest.mark.parametrize(
@@ -155,6 +261,11 @@ def test_too_large_a_body_is_refused_while_it_is_read(guard):
     assert len(answer.sent) == 2  # of the app behind, not a word
 
 
+def test_whoever_goes_while_sending_is_no_fault(guard):
+    with pytest.raises(IndexError):  # nobody is there to be answered
+        ask(guard, "POST", origin=f"http://{HERE}", body=(b"ab",), gone=True)
+
+
 def test_a_fault_of_the_app_is_not_hidden():
     async def broken(scope, receive, send):
         raise ZeroDivisionError
@@ -163,13 +274,13 @@ def test_a_fault_of_the_app_is_not_hidden():
         ask(Gate(broken, PORT, TOKEN))
 
 
-@pytest.mark.parametrize("cookie", [COOKIE, None])
-def test_every_answer_forbids_other_hosts_and_frames(guard, cookie):
-    headers = ask(guard, cookie=cookie).headers
+@pytest.mark.parametrize("path", ["/{key}/app", "/", "/x"])
+def test_every_answer_forbids_other_hosts_and_frames(guard, path):
+    headers = ask(guard, path=path).headers
     policy = dict(part.split(" ", 1) for part in headers["content-security-policy"].split("; "))
     assert policy["default-src"] == "'self'"
     assert policy["frame-ancestors"] == "'none'"
-    assert policy["connect-src"].split() == ["'self'", "data:", "blob:", f"ws://{HERE}", f"ws://localhost:{PORT}"]
+    assert policy["connect-src"].split() == ["'self'", "data:", "blob:", f"ws://{HERE}"]
     assert "http" not in "".join(policy.values())
     assert headers["referrer-policy"] == "no-referrer"
     assert headers["x-content-type-options"] == "nosniff"

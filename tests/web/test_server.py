@@ -29,67 +29,83 @@ def asks(server, **more) -> httpx.Client:
     return httpx.Client(base_url=server.origin, timeout=PATIENCE, trust_env=False, **more)
 
 
-def test_the_token_once_and_the_cookie_from_then_on(demo):
+def page_of(client: httpx.Client, server) -> str:
+    """The page behind the door, by the token."""
+    first = client.get("/", params={"token": server.address.partition("token=")[2]})
+    assert first.status_code == 303
+    return client.get(first.headers["location"]).text
+
+
+def prefix_of(page: str) -> str:
+    """What the paths of a page begin with."""
+    return re.search(r'prefix: "(/[\w-]{32})"', page)[1]
+
+
+def test_the_token_and_then_the_key_of_the_page(demo):
     token = demo.address.partition("token=")[2]
     assert len(token) >= 32
     with asks(demo) as client:
-        assert client.get("/").status_code == 403
-        first = client.get("/", params={"token": token})
-        assert (first.status_code, first.headers["location"]) == (303, "/")
-        page = client.get("/")
-        assert page.status_code == 200
-        assert token not in page.text
-        files = set(re.findall(r'(?:src|href)="(/_nicegui/[^"]+)"', page.text))
+        page = page_of(client, demo)
+        assert token not in page
+        assert not client.cookies
+        prefix = prefix_of(page)
+        files = set(re.findall(r'(?:src|href)="(/[^"]+)"', page))
         assert len(files) > 3
+        assert not set(re.findall(r'"(/_nicegui[^"]*)"', page)), "asked for without the key"
         for file in files:  # NiceGUI's own files are behind the gate, too
             assert client.get(file).status_code == 200, file
-            with asks(demo) as stranger:
-                assert stranger.get(file).status_code == 403, file
+            assert client.get(file.removeprefix(prefix)).status_code == 403, file
 
 
-def handshake(server, cookie: str, origin: str) -> int:
+def handshake(server, prefix: str, origin: str) -> int:
     """What a server answers to a socket that is to be opened: 101, or a refusal."""
     host, port = server.origin.removeprefix("http://").split(":")
-    target = "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
-    headers = [(b"origin", origin.encode()), (b"cookie", cookie.encode())]
+    target = f"{prefix}/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
+    headers = [(b"origin", origin.encode())]
     connection = wsproto.WSConnection(wsproto.ConnectionType.CLIENT)
     asked = connection.send(wsproto.events.Request(host=f"{host}:{port}", target=target, extra_headers=headers))
     with socket.create_connection((host, int(port)), timeout=PATIENCE) as stream:
         stream.sendall(asked)
         connection.receive_data(stream.recv(65536))
-    event = next(iter(connection.events()))
-    return 101 if isinstance(event, wsproto.events.AcceptConnection) else event.status_code
+        event = next(iter(connection.events()))
+        if isinstance(event, wsproto.events.AcceptConnection):
+            return 101
+        while stream.recv(65536):  # who is refused is let go
+            pass
+    return event.status_code
 
 
-def test_sockets_ask_for_cookie_and_origin(demo):
-    token = demo.address.partition("token=")[2]
-    cookie = f"zerorev-{demo.origin.rpartition(':')[2]}={token}"
-    assert handshake(demo, cookie, demo.origin) == 101
+def test_sockets_ask_for_key_and_origin(demo):
+    with asks(demo) as client:
+        prefix = prefix_of(page_of(client, demo))
+    assert handshake(demo, prefix, demo.origin) == 101
     assert handshake(demo, "", demo.origin) == 403
-    assert handshake(demo, cookie, "http://evil.example") == 403
-    assert handshake(demo, cookie, "http://127.0.0.1:1") == 403
+    assert handshake(demo, "/" + demo.address.partition("token=")[2], demo.origin) == 403
+    assert handshake(demo, prefix, "http://evil.example") == 403
+    assert handshake(demo, prefix, "http://127.0.0.1:1") == 403
 
 
 def test_a_name_that_was_made_to_mean_this_machine_is_refused(demo):
     token = demo.address.partition("token=")[2]
-    with asks(demo, headers={"host": "evil.example"}) as client:
-        answer = client.get("/", params={"token": token})
-    assert (answer.status_code, answer.text) == (403, "The app answers to 127.0.0.1 and localhost alone.\n")
+    for host in ("evil.example", demo.origin.removeprefix("http://").replace("127.0.0.1", "localhost")):
+        with asks(demo, headers={"host": host}) as client:
+            answer = client.get("/", params={"token": token})
+        assert (answer.status_code, answer.text) == (403, "The app answers to 127.0.0.1 alone.\n")
 
 
 def test_paths_of_this_machine_are_not_served(demo):
-    token = demo.address.partition("token=")[2]
     with asks(demo) as client:
-        client.get("/", params={"token": token})
+        prefix = prefix_of(page_of(client, demo))
         for path in (
             "/etc/passwd",
             "/%2e%2e/%2e%2e/etc/passwd",
             "/_nicegui/3.18.0/static/%2e%2e/%2e%2e/ui.py",
             "/docs",
         ):
-            answer = client.get(path)
+            answer = client.get(prefix + path)
             assert answer.status_code in (403, 404), path
             assert "root:" not in answer.text
+            assert client.get(path).status_code == 403
 
 
 @pytest.mark.skipif(not Path("/proc/net/tcp").is_file(), reason="reads what Linux says of its sockets")
@@ -184,16 +200,15 @@ class Page:
     async def __aenter__(self) -> Page:
         origin = self.address.partition("/?")[0]
         text = (await self.web.get("/", params={"token": self.address.partition("token=")[2]})).text
+        prefix = prefix_of(text)
         self.client = re.search(r"'client_id': '([0-9a-f-]+)'", text)[1]
         parts = {"client_id": self.client, "next_message_id": 0, "implicit_handshake": "true", "tab_id": self.tab}
         query = "&".join(f"{key}={value}" for key, value in (parts | {"document_id": "1", "old_tab_id": ""}).items())
-        cookies = "; ".join(f"{key}={value}" for key, value in self.web.cookies.items())
-        headers = {"Cookie": cookies, "Origin": origin}
         await self.socket.connect(
             f"{origin}?{query}",
-            headers=headers,
+            headers={"Origin": origin},
             transports=["websocket"],
-            socketio_path="/_nicegui_ws/socket.io",
+            socketio_path=f"{prefix}/_nicegui_ws/socket.io",
             wait_timeout=PATIENCE,
         )
         return self

@@ -30,7 +30,8 @@ from nicegui.dependencies import js_components
 from zerorev.errors import InputError
 from zerorev.web import page, views
 from zerorev.web.computing import Work
-from zerorev.web.gate import Gate
+from zerorev.web.connections import Connection
+from zerorev.web.gate import Gate, keeping
 from zerorev.web.session import Session
 from zerorev.web.state import State
 
@@ -150,7 +151,9 @@ def _site(pages: Pages) -> FastAPI:
         client = ui.context.client
         for style in ("zerorev.css", "compute.css"):
             ui.add_css(STATIC / style)
-        ui.add_head_html(f"<script>{(STATIC / 'ended.js').read_text(encoding='utf-8')}</script>{_early()}")
+        prefix = client.request.headers.get("x-forwarded-prefix", "")
+        ended = (STATIC / "ended.js").read_text(encoding="utf-8")
+        ui.add_head_html(f"<script>{keeping(prefix)}{ended}</script>{_early(prefix)}")
         with ui.element("div").classes("zr-loading").props('role="status" data-testid="loading"') as loading:
             ui.label("Opening …")
         await client.connected()
@@ -184,12 +187,12 @@ def _know_components() -> None:
     _ = ui.aggrid  # is imported where it is first named
 
 
-def _early() -> str:
+def _early(prefix: str) -> str:
     """Has the browser read its three megabytes of scripts while the server draws the page, and all of them at once.
 
     They would come one by one as the page needs them, and a connection that is lost meanwhile would lose some.
     """
-    scripts = (f'"/_nicegui/{nicegui.__version__}/components/{each.key}"' for each in js_components.values())
+    scripts = (f'"{prefix}/_nicegui/{nicegui.__version__}/components/{each.key}"' for each in js_components.values())
     return f'<script type="module">for (const script of [{", ".join(scripts)}]) import(script);</script>'
 
 
@@ -205,6 +208,7 @@ class _Server(uvicorn.Server):
                 gate,
                 log_level="error",
                 access_log=False,
+                http=Connection,
                 ws="wsproto",
                 ws_max_size=LARGEST_MESSAGE,
                 server_header=False,
