@@ -24,6 +24,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs
 
+from zerorev.model.text import MAX_BYTES
+
 __all__ = ["LARGEST", "Gate", "keeping"]
 
 Scope = MutableMapping[str, Any]
@@ -32,7 +34,7 @@ Receive = Callable[[], Awaitable[Message]]
 Send = Callable[[Message], Awaitable[None]]
 App = Callable[[Scope, Receive, Send], Awaitable[None]]
 
-LARGEST = 20 * 2**20  # [bytes] of the body of a request: a plan of 1,000 holes is a fifth of it
+LARGEST = MAX_BYTES + 2**20  # [bytes] of the body of a request: a file, and what is sent around it
 READS_ONLY = ("GET", "HEAD")
 TICKET_LASTS = 60.0  # [s]
 MOST_TICKETS = 100
@@ -42,7 +44,7 @@ STORED_AS = "zerorev-key"  # name in the local storage
 NO_TOKEN = "This page is opened with the address that `zerorev view` printed, which holds a token."
 NOT_THIS_HOST = "The app answers to 127.0.0.1 alone."
 NOT_OUR_PAGE = "The app answers to its own page alone."
-TOO_LARGE = f"More than {LARGEST // 2**20} MiB is not taken."
+TOO_LARGE = f"More than {MAX_BYTES // 2**20} MiB is not taken."
 
 DOOR = (Path(__file__).parent / "static" / "door.html").read_text(encoding="utf-8")
 

@@ -6,11 +6,14 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
-from zerorev.model.files import job_from_text, plan_from_text, read_job, read_plan
+from zerorev.model.files import read_job, read_plan
+from zerorev.model.job import Job
+from zerorev.model.plan import Plan
 from zerorev.model.text import read_text
+from zerorev.web.files import is_plan, parsed
 from zerorev.web.state import State, opened_job, opened_map, opened_plan
 
-__all__ = ["demo", "opened", "opened_text", "with_meshes"]
+__all__ = ["demo", "opened", "opened_text", "shown", "with_meshes"]
 
 ACCEPTED = "a job file (YAML), a plan file (JSON) or a folder of a workspace map (zarr)"
 
@@ -18,7 +21,7 @@ ACCEPTED = "a job file (YAML), a plan file (JSON) or a folder of a workspace map
 def demo() -> State:
     """The three positions at which the thesis drilled, not planned yet."""
     text = (resources.files("zerorev.web") / "demo.yaml").read_text(encoding="utf-8")
-    return opened_job(job_from_text(text, "demo.yaml"))
+    return opened_text(text, "demo.yaml")
 
 
 def opened(path: Path) -> State:
@@ -32,7 +35,7 @@ def opened(path: Path) -> State:
     """
     if path.is_dir():
         return _opened_map(path)
-    if _is_plan(read_text(path, ACCEPTED), path.name):
+    if is_plan(read_text(path, ACCEPTED), path.name):
         return opened_plan(read_plan(path))
     return opened_job(read_job(path))
 
@@ -47,9 +50,12 @@ def opened_text(text: str, name: str) -> State:
     Raises:
         InputError: neither, or one that cannot be used.
     """
-    if _is_plan(text, name):
-        return opened_plan(plan_from_text(text, name))
-    return opened_job(job_from_text(text, name))
+    return shown(parsed(text, name))
+
+
+def shown(found: Job | Plan) -> State:
+    """What a page shows of a job or a plan."""
+    return opened_plan(found) if isinstance(found, Plan) else opened_job(found)
 
 
 def with_meshes(state: State, urdf: Path) -> State:
@@ -61,11 +67,6 @@ def with_meshes(state: State, urdf: Path) -> State:
     from zerorev.report.urdf_meshes import read_meshes
 
     return state if state.job is None else replace(state, meshes=read_meshes(urdf, state.job.robot))
-
-
-def _is_plan(text: str, name: str) -> bool:
-    """Whether a text is JSON, as plans are and jobs are not."""
-    return text.lstrip().startswith("{") and not name.lower().endswith((".yaml", ".yml"))
 
 
 def _opened_map(path: Path) -> State:

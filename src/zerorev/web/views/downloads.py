@@ -15,16 +15,15 @@ from nicegui import ui
 
 from zerorev.errors import NotExportableError, ZerorevError
 from zerorev.jobs import workers_for
-from zerorev.model.files import plan_to_json
-from zerorev.model.job_data import job_files
 from zerorev.model.plan import UNFINISHED, Finding, Plan
-from zerorev.model.text import json_text
 from zerorev.program.export import Exported, exporting
+from zerorev.web import files
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import State, plan_of
 from zerorev.web.views.fields import form
 from zerorev.web.views.notices import failed, note
+from zerorev.web.views.waiting import do_apart
 
 __all__ = ["downloads"]
 
@@ -101,19 +100,25 @@ def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
 def _plan(session: Session) -> None:
     plan = plan_of(session.state)
     ending = "plan" if plan.strokes == "asked" else "depths"
-    ui.download.content(json_text(plan_to_json(plan)), f"{_stem(plan.name)}.{ending}.json", "application/json")
+    name = f"{_stem(plan.name)}.{ending}.json"
+    save = partial(ui.download.content, filename=name, media_type="application/json")
+    do_apart(f"Writing {name} …", files.plan_written, files.pieces(plan), b"".join, save)
 
 
 def _job(session: Session) -> None:
     job = session.state.job
     if job is None:
         return
-    files = job_files(job)
-    if len(files) == 1:
-        ((name, text),) = files.items()
-        ui.download.content(text, name, "application/yaml")
-    else:
-        ui.download.content(_zipped((name, text.encode()) for name, text in files.items()), f"{_stem(job.name)}.zip")
+
+    def save(made: dict[str, str]) -> None:
+        if len(made) == 1:
+            ((name, text),) = made.items()
+            ui.download.content(text, name, "application/yaml")
+        else:
+            zipped = _zipped((name, text.encode()) for name, text in made.items())
+            ui.download.content(zipped, f"{_stem(job.name)}.zip")
+
+    do_apart("Writing the job …", files.job_written, files.pieces(job), dict, save)
 
 
 # --- in a while -------------------------------------------------------------------------------------------------------
@@ -265,10 +270,10 @@ def _only(plan: Plan, state: State) -> Plan:
     return replace(plan, holes=holes)
 
 
-def _zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
+def _zipped(named: Iterable[tuple[str, bytes]]) -> bytes:
     held = io.BytesIO()
     with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in files:
+        for name, content in named:
             archive.writestr(name, content)
     return held.getvalue()
 

@@ -6,15 +6,15 @@ from collections.abc import Awaitable, Callable
 
 from nicegui import events, ui
 
-from zerorev.errors import ZerorevError
-from zerorev.web.gate import LARGEST
-from zerorev.web.opening import demo, opened_text
+from zerorev.model.text import MAX_BYTES
+from zerorev.web import files
+from zerorev.web.opening import demo, shown
 from zerorev.web.session import Session
 from zerorev.web.views.notices import failed
+from zerorev.web.views.waiting import do_apart
 
 __all__ = ["file_picker", "open_button", "open_demo", "pick_file"]
 
-LARGEST = LARGEST - 2**20  # [bytes] what the gate lets in, less what is sent around a file
 KINDS = ".yaml,.yml,.json"
 
 
@@ -44,12 +44,14 @@ def pick_file(session: Session, button: ui.element) -> None:
     """
 
     async def opened(event: events.UploadEventArguments) -> None:
-        try:
-            session.change(opened_text((await event.file.read()).decode("utf-8-sig"), event.file.name))
-        except UnicodeDecodeError:
-            failed(f"{event.file.name}: is not text (accepted: a job file (YAML) or a plan file (JSON), in UTF-8)")
-        except ZerorevError as error:
-            failed(str(error))
+        name, content = event.file.name, await event.file.read()
+        do_apart(
+            f"Reading {name} …",
+            files.read,
+            [name, *files.cut(content)],
+            lambda pieces: shown(files.whole(pieces)),
+            session.change,
+        )
 
     file_picker(button, opened, KINDS, failed)
 
@@ -59,6 +61,7 @@ def file_picker(
     opened: Callable[[events.UploadEventArguments], Awaitable[None]],
     kinds: str,
     refused: Callable[[str], object],
+    largest: int = MAX_BYTES,
 ) -> None:
     """Have a button open the browser's dialog for files.
 
@@ -67,11 +70,12 @@ def file_picker(
         opened: is given what was picked.
         kinds: of files, by their endings.
         refused: is told why a file was not taken.
+        largest: size of a file [bytes].
     """
-    upload = ui.upload(on_upload=opened, auto_upload=True, max_file_size=LARGEST).classes("zr-hidden")
+    upload = ui.upload(on_upload=opened, auto_upload=True, max_file_size=largest).classes("zr-hidden")
     upload.props(f'accept="{kinds}" aria-hidden="true"')
     upload.on_upload(upload.reset)
-    upload.on_rejected(lambda: refused(f"not taken (accepted: a file {kinds} of at most {LARGEST // 2**20} MiB)"))
+    upload.on_rejected(lambda: refused(f"not taken (accepted: a file {kinds} of at most {largest // 2**20} MiB)"))
     button.on("click", js_handler=f"() => getElement({upload.id}).$refs.qRef.pickFiles()")
 
 

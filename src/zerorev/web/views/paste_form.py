@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from html import escape
 
-from nicegui import events, ui
+from nicegui import background_tasks, events, ui
 
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.sheet import COLUMNS, SheetRow, sheet_rows
+from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import with_holes
 from zerorev.web.throttle import throttled
@@ -19,6 +21,7 @@ from zerorev.web.views.opener import file_picker
 
 __all__ = ["paste_dialog"]
 
+LARGEST = 4 * 2**20  # [bytes] of a CSV file, which is shown as text: more than its rows may be
 SHOWN = 200  # rows of the preview; all are taken
 EXAMPLE = "B1\t0\t40\t0\t1\t0\t0\t40"
 
@@ -31,6 +34,7 @@ def paste_dialog(session: Session) -> Callable[[], None]:
     """
     dialog, card, _ = form("Holes from a spreadsheet", "paste-form", wide=True)
     good: list[Hole] = []
+    newest: object = None  # of what was pasted, that which is being understood
     with card:
         ui.label(
             f"Copy rows there and paste them here, with the cells {', '.join(COLUMNS)}, or with a header that names "
@@ -50,16 +54,33 @@ def paste_dialog(session: Session) -> Callable[[], None]:
         preview.props('data-testid="paste-rows"')
 
     def judge() -> None:
+        """Understand the rows in a thread; what was pasted since then is waited for instead."""
+        nonlocal newest
+        newest = asked = object()
         job, text = session.state.job, str(pasted.value or "")
         good.clear()
-        if job is None:
+        take.set_enabled(False)
+        if job is None or not text.strip():
+            show([])
             return
-        try:
-            rows = [] if not text.strip() else sheet_rows(
-                text, reference_of(job), job.tool, job.T_base_part, {hole.id for hole in job.holes}
-            )  # fmt: skip
-        except InputError as error:
-            preview.set_content(f'<p class="zr-problem">{escape(str(error))}</p>')
+        taken = {hole.id for hole in job.holes}
+        understand = partial(sheet_rows, text, reference_of(job), job.tool, job.T_base_part, taken)
+
+        async def understood() -> None:
+            rows: Sequence[SheetRow] | InputError
+            try:
+                rows = await aside(understand)
+            except InputError as error:
+                rows = error
+            if newest is asked and not dialog.is_deleted:
+                show(rows)
+
+        verdict.set_text("reading …")
+        background_tasks.create(understood())
+
+    def show(rows: Sequence[SheetRow] | InputError) -> None:
+        if isinstance(rows, InputError):
+            preview.set_content(f'<p class="zr-problem">{escape(str(rows))}</p>')
             verdict.set_text("nothing can be taken")
         else:
             good.extend(row.hole for row in rows if row.hole is not None)
@@ -84,7 +105,7 @@ def paste_dialog(session: Session) -> Callable[[], None]:
 
     with card:
         take = ends(dialog, "Take", taken)
-        file_picker(csv, read, ".csv,.txt,.tsv", verdict.set_text)
+        file_picker(csv, read, ".csv,.txt,.tsv", verdict.set_text, LARGEST)
     pasted.on_value_change(throttled(judge))
 
     def opened() -> None:

@@ -1,0 +1,95 @@
+"""Files from and for the browser, read and written in a process of their own, between which a plan goes in pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import fields
+from typing import Any
+
+from zerorev.errors import InputError
+from zerorev.model.files import job_from_text, plan_from_text, plan_to_json
+from zerorev.model.job import Job
+from zerorev.model.plan import Plan
+from zerorev.model.text import json_text
+
+__all__ = ["cut", "is_plan", "job_written", "parsed", "pieces", "plan_written", "read", "whole"]
+
+HOLES = 200  # of a piece
+BYTES = 2**20  # of a piece
+
+
+def parsed(text: str, name: str) -> Job | Plan:
+    """The job or the plan of a text; no file of this machine is opened but what ships with zerorev.
+
+    Args:
+        text: of a file.
+        name: that it had, for messages.
+
+    Raises:
+        InputError: neither, or one that cannot be used.
+    """
+    return plan_from_text(text, name) if is_plan(text, name) else job_from_text(text, name)
+
+
+def is_plan(text: str, name: str) -> bool:
+    """Whether a text is JSON, as plans are and jobs are not."""
+    return text.lstrip().startswith("{") and not name.lower().endswith((".yaml", ".yml"))
+
+
+def pieces(whole: Job | Plan) -> Iterator[Any]:
+    """A job or a plan in pieces that are pickled in a moment each."""
+    values = {field.name: getattr(whole, field.name) for field in fields(whole)}
+    holes = values.pop("holes")
+    yield type(whole), values
+    for start in range(0, len(holes), HOLES):
+        yield holes[start : start + HOLES]
+
+
+def whole(pieces: Iterable[Any]) -> Any:
+    """The job or the plan of `pieces`."""
+    kind, values = next(iterator := iter(pieces))
+    return kind(**values, holes=tuple(hole for piece in iterator for hole in piece))
+
+
+def cut(content: bytes) -> Iterator[bytes]:
+    """Bytes in pieces."""
+    return (content[start : start + BYTES] for start in range(0, len(content), BYTES))
+
+
+# --- tasks of `zerorev.web.apart` -------------------------------------------------------------------------------------
+
+
+def read(given: Iterator[Any]) -> Iterator[Any]:
+    """From a file's name and its content in bytes to the pieces of its job or plan.
+
+    Raises:
+        InputError: neither, or one that cannot be used.
+    """
+    name, content = next(given), b"".join(given)
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        accepted = "a job file (YAML) or a plan file (JSON), in UTF-8"
+        raise InputError("is not text", where=name, accepted=accepted) from None
+    del content
+    return pieces(parsed(text, name))
+
+
+def plan_written(given: Iterator[Any]) -> Iterator[bytes]:
+    """From the pieces of a plan to those of its file.
+
+    Raises:
+        InputError: the plan holds a number that no plan file may hold.
+    """
+    return cut(json_text(plan_to_json(whole(given))).encode())
+
+
+def job_written(given: Iterator[Any]) -> Iterator[tuple[str, str]]:
+    """From the pieces of a job to its files, each by its name.
+
+    Raises:
+        InputError: its holes count their spins from different references, and a job file has one.
+    """
+    from zerorev.model.job_data import job_files
+
+    yield from job_files(whole(given)).items()

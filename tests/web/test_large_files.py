@@ -1,0 +1,78 @@
+"""Files in the browser: read beside the page, whatever is in them; and as large as the command line takes them."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+pytestmark = pytest.mark.xdist_group("browser")
+expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
+
+JOB = """\
+robot: kuka_kr6_r700_2
+tool: thesis_drill
+holes:
+  - {id: first, target_mm: [500, 300, 800], direction: [1, 0, 0], depth_mm: 20}
+  - {id: second, target_mm: [500, 300, 790], direction: [1, 0, 0], depth_mm: 20}
+"""
+# takes long to check
+MANY_EMPTY = b'{"format": "zerorev.plan/1", "holes": [' + b"{}," * 100_000 + b"{}]}"
+
+
+def uploaded(page, name, content):
+    """Pick a file in the browser's dialog."""
+    page.get_by_test_id("open").click()
+    with page.expect_file_chooser() as waiting:
+        page.get_by_test_id("open-file").click()
+    waiting.value.set_files({"name": name, "mimeType": "text/plain", "buffer": content})
+
+
+@pytest.fixture
+def ready(demo_page):
+    expect(demo_page.get_by_test_id("reversals")).to_have_text("0", timeout=120_000)
+    return demo_page
+
+
+def test_a_job_is_uploaded(ready):
+    uploaded(ready, "mine.yaml", JOB.encode())
+    expect(ready.get_by_test_id("page")).to_contain_text("hole 1 of 2")
+    expect(ready.get_by_test_id("waiting")).to_have_count(0)
+    uploaded(ready, "bad.yaml", b"robot: [")
+    expect(ready.get_by_role("alert").filter(has_text="bad.yaml, line 1")).to_be_visible()
+    expect(ready.get_by_test_id("page")).to_contain_text("hole 1 of 2")
+
+
+def test_a_file_that_is_long_to_read_holds_up_nobody(ready, open_page, demo, say):
+    """Neither its own page nor another; it can be cancelled."""
+    other = open_page(demo)
+    expect(other.get_by_test_id("reversals")).to_have_text("0", timeout=120_000)
+    uploaded(ready, "empty.json", MANY_EMPTY)
+    expect(ready.get_by_test_id("waiting")).to_contain_text("Reading empty.json")
+    waits = []
+    for page in (other, ready):
+        asked = time.perf_counter()
+        page.get_by_test_id("holes").get_by_text("position_2").first.click()
+        expect(page.get_by_test_id("page")).to_contain_text("hole 2 of 3")
+        waits.append(time.perf_counter() - asked)
+    say(f"while a hostile file is read, a click on a hole shows it within {max(waits):.2f} s")
+    if ready.get_by_test_id("waiting").count():  # not refused yet
+        ready.get_by_test_id("waiting").get_by_text("Cancel").click()
+    expect(ready.get_by_test_id("waiting")).to_have_count(0)
+    expect(ready.get_by_test_id("page")).to_contain_text("hole 2 of 3")
+    ready.reload()
+    expect(ready.get_by_test_id("page")).to_contain_text("hole 2 of 3")
+
+
+def test_ten_thousand_rows_are_pasted_beside_the_page(ready, say):
+    ready.get_by_test_id("paste").click()
+    rows = [f"p{n},{400 + n % 100},{n // 100},700,1,0,0,20" for n in range(10_000)]
+    began = time.perf_counter()
+    with ready.expect_file_chooser() as waiting:
+        ready.get_by_test_id("paste-file").click()
+    waiting.value.set_files({"name": "a.csv", "mimeType": "text/csv", "buffer": "\n".join([*rows, "bad"]).encode()})
+    expect(ready.get_by_test_id("paste-verdict")).to_have_text("10000 good, 1 not; only the good ones are taken")
+    say(f"10,000 rows of a CSV file: shown as understood after {time.perf_counter() - began:.1f} s")
+    expect(ready.get_by_test_id("paste-rows")).to_contain_text("and 9801 rows more")
+    ready.get_by_test_id("form-done").click()
+    expect(ready.get_by_test_id("holes-shown")).to_have_text("10003 holes")
