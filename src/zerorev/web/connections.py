@@ -10,7 +10,7 @@ from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 __all__ = ["Connection"]
 
-WHOLE_HEAD = 4.0  # [s] from a connection, or the answer before, to a request's head as a whole
+WHOLE_HEAD = 3.0  # [s] from a connection, or the answer before, to a request's head as a whole
 NEXT_PIECE = 5.0  # [s] between two pieces of a request's body
 LARGEST_HEAD = 64 * 2**10  # [bytes]
 MOST_WAITING = 100  # connections that have asked for nothing yet; a browser's asks within milliseconds
