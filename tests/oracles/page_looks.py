@@ -6,7 +6,8 @@ TEXTS = """
 const texts = [...document.body.querySelectorAll("*")].map((element) => {
     const own = [...element.childNodes].filter((node) => node.nodeType === Node.TEXT_NODE);
     return { element, text: own.map((node) => node.textContent.trim()).join(" ").trim() };
-}).filter(({ element, text }) => text && !element.closest("script, style, template, noscript")
+}).filter(({ element, text }) => text && !element.closest(
+        "script, style, template, noscript, .ag-aria-description-container") // the last is for readers of the screen
     && element.checkVisibility({ opacityProperty: true, visibilityProperty: true }));
 const named = (element, text) =>
     `${element.closest("[data-testid]")?.dataset.testid ?? ""} ${element.className} "${text}"`;
@@ -42,5 +43,43 @@ return texts.filter(({ element }) => !element.closest("svg, .disabled, [disabled
         if (ratio >= (large ? 3 : 4.5)) return [];
         return [`${ratio.toFixed(2)} ${named(element, text)} ${style.color} on ${under.map(Math.round)}`];
     });
+}"""
+)
+
+# Texts that are not in full view where they stand: cut by their own box or by a box around them that cannot be
+# scrolled, or shortened by an ellipsis. -> ["which"]
+CUT = (
+    """() => {"""
+    + TEXTS
+    + """
+const typed = "input:not([type=file], [type=range], .q-select__focus-target), textarea";
+const fields = [...document.querySelectorAll(typed)].filter((field) => field.value
+    && field.checkVisibility({ visibilityProperty: true }) && field.scrollWidth > field.clientWidth + 1);
+const boxes = (element) => {
+    const range = document.createRange();
+    range.selectNodeContents(element);
+    return element.closest("svg") ? [element.getBoundingClientRect()] : [...range.getClientRects()];
+};
+const beyond = (inner, outer, side) => side === "x"
+    ? inner.left < outer.left - 1 || inner.right > outer.right + 1
+    : inner.top < outer.top - 1.5 || inner.bottom > outer.bottom + 1.5;
+const clips = (value) => value === "hidden" || value === "clip";
+const whole = (element) => {
+    const own = getComputedStyle(element);
+    if (!element.closest("svg") && clips(own.overflowX) && element.scrollWidth > element.clientWidth + 1) return false;
+    if (own.webkitLineClamp !== "none" && element.scrollHeight > element.clientHeight + 1) return false;
+    let across = true, down = true; // until a box that can be scrolled
+    const all = boxes(element).filter((box) => box.width > 0);
+    for (let each = element.parentElement; each && (across || down); each = each.parentElement) {
+        const style = getComputedStyle(each), frame = each.getBoundingClientRect();
+        if (across && clips(style.overflowX) && all.some((box) => beyond(box, frame, "x"))) return false;
+        if (down && clips(style.overflowY) && all.some((box) => beyond(box, frame, "y"))) return false;
+        across &&= !["auto", "scroll"].includes(style.overflowX);
+        down &&= !["auto", "scroll"].includes(style.overflowY);
+    }
+    return true;
+};
+return [...texts.filter(({ element }) => !whole(element)).map(({ element, text }) => named(element, text)),
+    ...fields.map((field) => named(field, field.value))];
 }"""
 )

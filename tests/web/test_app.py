@@ -136,6 +136,12 @@ def from_menu(page, entry):
     page.get_by_test_id(entry).click()
 
 
+def of_some(page, entry):
+    """The same while holes are not planned yet, which is to be confirmed."""
+    from_menu(page, entry)
+    page.get_by_test_id("save-incomplete").click()
+
+
 def test_the_demo_shows_zero_reversals(ready, planned):
     assert planned.score.reversals == 0
     expect(ready.get_by_test_id("reversal-mark")).to_have_count(0)
@@ -340,7 +346,7 @@ def test_a_map_of_cells_and_a_cell_that_becomes_a_hole(ready):
     expect(ready.get_by_test_id("holes-shown")).to_have_text("4 holes")
     expect(ready.get_by_test_id("holes")).to_contain_text("cell ")
     expect(ready.get_by_test_id("reversals")).to_have_text("0")
-    _, plan = saved(ready, lambda: from_menu(ready, "download-plan"))
+    _, plan = saved(ready, lambda: of_some(ready, "download-plan"))
     made = plan_from_text(plan.decode(), "plan.json").holes[-1]
     assert made.hole.id.startswith("cell ")
     assert made.hole.depth * 1e3 == pytest.approx(depth, abs=0.06)
@@ -367,14 +373,14 @@ def test_a_click_on_a_cell_in_the_picture_of_the_robot_plans_it(ready, on_screen
     ready.mouse.click(x, y)
     expect(ready.get_by_test_id("page")).to_contain_text("hole 4 of 4")
     expect(ready.get_by_test_id("reversals")).to_have_text("0")
-    _, plan = saved(ready, lambda: from_menu(ready, "download-plan"))
+    _, plan = saved(ready, lambda: of_some(ready, "download-plan"))
     made = plan_from_text(plan.decode(), "plan.json").holes[-1].hole
     wanted = ready.evaluate(f"{CELL}.slice.at({chosen}, {CELL}.camera.position.clone()).toArray()")
     np.testing.assert_allclose(made.target * 1e3, wanted, atol=1e-3)
 
 
 def test_the_replay_opens_from_the_disk_without_a_network(ready, open_page, browser, tmp_path):
-    name, page = saved(ready, lambda: from_menu(ready, "download-replay"))
+    name, page = saved(ready, lambda: of_some(ready, "download-replay"))
     (tmp_path / name).write_bytes(page)
     context = browser.new_context(offline=True)
     faults, asked = [], []
@@ -437,6 +443,7 @@ def test_what_a_curve_is_under_the_pointer(ready, planned):
     expect(tip).to_contain_text("A1")
     ready.mouse.move(0, 0)
     expect(tip).to_have_count(0)
+    ready.get_by_test_id("bracket").scroll_into_view_if_needed()
     box = ready.get_by_test_id("bracket").bounding_box()
     ready.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     expect(tip).to_contain_text("in deg/mm")

@@ -34,10 +34,10 @@ export class Cell {
       "aria-label": "The robot in its cell. Space plays, arrows move along the path, shift and arrows turn the view, plus and minus zoom.",
     });
     this.overlay = element("div", { class: "zrc-labels", "aria-hidden": "true" });
-    this.legend = element("div");
+    this.legend = element("div", { class: "zrc-legend" });
     this.note = element("div", { class: "zrc-note zrc-card", hidden: true, "data-testid": "cell-note" });
-    this.stage = element("div", { class: "zrc-stage" }, this.canvas, this.overlay, this.readout.root, this.legend, this.note);
-    root.replaceChildren(this.stage, this.bar.root);
+    this.stage = element("div", { class: "zrc-stage" }, this.canvas, this.overlay, this.readout.root, this.note);
+    root.replaceChildren(this.stage, this.legend, this.bar.root); // the legend beside the picture: it would hide the drill
     this.readout.root.hidden = true;
     listen(this);
     try {

@@ -140,7 +140,7 @@ export function legend(holes) {
   }
   const words = (kind) => (kind === -2 ? "infeasible" : kind === -1 ? "not planned yet" : `${kind}${kind === 6 ? " or more" : ""} reversal${kind === 1 ? "" : "s"}`);
   const order = [...counts.keys()].sort((a, b) => (a < 0 ? 9 - a : a) - (b < 0 ? 9 - b : b));
-  return element("div", { class: "zrc-legend zrc-card", "data-testid": "cell-legend" },
+  return element("div", { class: "zrc-legend", "data-testid": "cell-legend" },
     ...order.map((kind) => element("div", {},
       element("i", { class: `zrc-dot ${kind === -2 ? "zrc-cross" : ""}`, style: `background:${holes.colour(kind)}` }),
       `${words(kind)}: ${counts.get(kind)} hole${counts.get(kind) === 1 ? "" : "s"}`)));

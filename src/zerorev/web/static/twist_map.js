@@ -10,35 +10,33 @@ const LEAST_HALF = 10; // [deg] shown on either side of the middle, at the close
 export default {
   template: `
     <section class="zr-tw" data-testid="twist-map" aria-label="Twist map">
+      <div class="zr-tw-tools">
+        <button type="button" :class="{ away: !inHand }" :disabled="!inHand" @click="$emit('let_go')" data-testid="let-go" title="give up the motion by hand">back to the plan</button>
+        <label>branch <select aria-label="branch" data-testid="branch" :value="choice" :disabled="!branches.length" @change="choose">
+          <option v-for="each in branches" :key="each.value" :value="each.value">{{ each.label }}</option></select></label>
+        <span class="zr-tw-zoom" role="group" aria-label="spins that are shown">
+          <button type="button" aria-label="show fewer spins" data-testid="zoom-in" @click="zoom(0.5)">+</button>
+          <button type="button" aria-label="show more spins" data-testid="zoom-out" @click="zoom(2)">−</button>
+          <button type="button" aria-label="show a whole turn around the motion" data-testid="zoom-fit" @click="fit()">fit</button>
+        </span>
+      </div>
       <div class="zr-tw-strip">
         <div class="zr-tw-total" :class="grade"><b data-testid="reversals">{{ count }}</b> <span>{{ count === "1" ? "reversal" : "reversals" }}</span></div>
         <div class="zr-tw-joints" v-if="joints.length">
           <span v-for="joint in joints" :key="joint.name" class="zr-tw-chip" :class="{ some: joint.count > 0 }" data-testid="joint-reversals"
             :title="joint.title"><svg width="13" height="4" aria-hidden="true"><line x1="0" x2="13" y1="2" y2="2" :stroke="joint.colour" stroke-width="3" :stroke-dasharray="joint.dash"/></svg>{{ joint.name }} <b>{{ joint.count }}</b></span>
         </div>
-        <button type="button" class="zr-tw-back" :class="{ away: !inHand }" :disabled="!inHand" @click="$emit('let_go')" data-testid="let-go" title="let the motion in hand go">back to the plan</button>
-      </div>
-      <div class="zr-tw-strip">
-        <template v-if="runs && count !== '–'">
+        <div class="zr-tw-numbers" :class="{ away: !runs || count === '–' }">
           <div class="zr-tw-number" title="sum over the joints of the angle moved">travel <b data-testid="travel">{{ travel || "–" }}</b> deg</div>
           <div class="zr-tw-number" :class="{ mild: why }" title="least rate of the joints that do not reverse">slowest <b data-testid="margin">{{ margin || "–" }}</b> deg/mm</div>
-          <div class="zr-tw-number zr-tw-spare" title="least distance of a joint to a limit">to a limit <b data-testid="limit">{{ limit || "–" }}</b> deg</div>
-        </template>
-        <p class="zr-tw-why" :class="{ bad: !runs, mild: runs }" data-testid="why" role="status" :title="why">{{ why }}</p>
-        <div class="zr-tw-tools">
-          <label><span class="zr-tw-spare">branch </span><select aria-label="branch" data-testid="branch" :value="choice" :disabled="!branches.length" @change="choose">
-            <option v-for="each in branches" :key="each.value" :value="each.value">{{ each.label }}</option></select></label>
-          <span class="zr-tw-zoom" role="group" aria-label="spins that are shown">
-            <button type="button" aria-label="show fewer spins" data-testid="zoom-in" @click="zoom(0.5)">+</button>
-            <button type="button" aria-label="show more spins" data-testid="zoom-out" @click="zoom(2)">−</button>
-            <button type="button" aria-label="show a whole turn around the motion" data-testid="zoom-fit" @click="fit()">fit</button>
-          </span>
+          <div class="zr-tw-number" title="least distance of a joint to a limit">to a limit <b data-testid="limit">{{ limit || "–" }}</b> deg</div>
         </div>
       </div>
       <div class="zr-tw-plot" ref="plot">
         <canvas ref="canvas" aria-hidden="true"></canvas>
         <svg ref="back" aria-hidden="true"></svg>
         <svg ref="svg" role="group" aria-label="spin over the path; the points of the motion can be moved"></svg>
+        <p class="zr-tw-why" :class="{ bad: !runs, mild: runs }" data-testid="why" role="status">{{ why }}</p>
         <div class="zr-tw-cover" v-if="cover" data-testid="map-cover" role="status"><span class="zr-tw-spinner" v-if="loading"></span>{{ cover }}</div>
       </div>
       <div class="zr-tw-foot">

@@ -21,6 +21,7 @@ STEP = float(np.deg2rad(1.0))
 KEYS = """<span class="zr-key-band"></span>between the legs
 <span class="zr-key-good"></span>spins where all six are"""
 THIN = {"width": 1.3}
+CLOSE = 0.2  # share of the picture's height
 LABEL = {"show": True, "color": INK, "fontSize": 11, "textBorderColor": SURFACE, "textBorderWidth": 3}
 
 
@@ -117,6 +118,8 @@ def _slopes(rates: Bracket | None, line: dict[str, Any]) -> dict[str, Any]:
         for slope, name in zip(rates.slopes.tolist(), ("plunge", "retract"), strict=True):
             label = {"show": True, "position": "end", "color": INK, "fontSize": 11, "lineHeight": 13}
             label["formatter"] = f"{name}\n{signed(slope, 3)}"
+            if np.ptp(rates.slopes) < CLOSE * np.ptp(rates.rates):  # the two labels out of each other's way
+                label["offset"] = [0, -14 if slope == rates.slopes.max() else 14]
             lines.append(
                 {"yAxis": round(slope, 5), "label": label, "lineStyle": {"color": INK, "type": [6, 3], **THIN}}
             )

@@ -18,6 +18,7 @@ from zerorev.web.session import Session
 from zerorev.web.state import State, selected, without_hole
 from zerorev.web.throttle import throttled
 from zerorev.web.views.fields import built_when_opened
+from zerorev.web.views.hole_columns import options, widths
 from zerorev.web.views.hole_form import hole_dialog
 from zerorev.web.views.notices import failed, note
 from zerorev.web.views.paste_form import paste_dialog
@@ -27,21 +28,6 @@ __all__ = ["holes"]
 WORDS = {"infeasible": "no motion", "unplanned": "–"}
 MARKS = {"error": "✕", "warning": "!", "info": "i"}
 
-# the grid's own language; a row's values are data to all of these
-REVERSALS = """p => p.data.after === null ? (p.data.standing === 'unplanned' ? '–' : 'no motion')
-    : (p.data.before === null ? '?' : p.data.before) + ' → ' + p.data.after"""
-BY_REVERSALS = """(a, b, m, n) => {
-    const rank = d => d.standing === 'unplanned' ? 1e3 : d.after === null ? 1e2 : d.after;
-    return rank(m.data) - rank(n.data) || (m.data.before ?? 99) - (n.data.before ?? 99);
-}"""
-DIGITS = "p => p.value === null || p.value === undefined ? '–' : p.value.toFixed({digits}).replace('-', '−')"
-COUNT = "p => p.value || ''"
-STEP = """p => {
-    const to = p.nextCellPosition;
-    if (to && to.rowIndex !== p.previousCellPosition.rowIndex && to.rowPinned == null)
-        p.api.getDisplayedRowAtIndex(to.rowIndex)?.setSelected(true, true, 'rowClicked');
-    return to;
-}"""
 PICKED = """e => {
     const row = e.api.getSelectedRows()[0];
     if (row && e.source !== 'api') getElement(%d).$emit('picked', row.id);
@@ -85,7 +71,8 @@ class _Table:
         self.told: Callable[[str], object] = lambda text: None
 
     def draw(self) -> None:
-        self._grid = _Grid(_options(), auto_size_columns=False)
+        self._widths = widths(self.rows)
+        self._grid = _Grid(options(self._widths), auto_size_columns=False)
         self._grid.classes("zr-grid").props('data-testid="holes"')
         self._grid.options[":onSelectionChanged"] = PICKED % self._grid.id
         self._grid.on("picked", self._picked)
@@ -132,8 +119,17 @@ class _Table:
     def _send_rows(self) -> None:
         self._grid.run_grid_method("setGridOption", "rowData", [row._asdict() for row in self.rows.values()])
 
+    def _widen(self, changed: Mapping[str, HoleRow]) -> None:
+        """Make columns wider for rows whose texts are longer than any before."""
+        wider = {name: width for name, width in widths(changed).items() if width > self._widths[name]}
+        if wider:
+            self._widths |= wider
+            change = [{"key": name, "newWidth": width} for name, width in wider.items()]
+            self._grid.run_grid_method("setColumnWidths", change)
+
     def _update(self, rows: dict[str, HoleRow]) -> None:
         old, self.rows = self.rows, rows
+        self._widen({key: row for key, row in rows.items() if old.get(key) is not row})
         added = [key for key in rows if key not in old]
         if [*(key for key in old if key in rows), *added] != list(rows):  # in another order, as after an undo
             self._send_rows()
@@ -166,41 +162,6 @@ def _by_id(state: State) -> dict[str, tuple[int, int]]:
     """Of each hole, which objects its row was made of."""
     assert state.job is not None
     return {hole.id: (id(hole), id(state.answers.get(hole.id))) for hole in state.job.holes}
-
-
-def _options() -> dict[str, Any]:
-    number = {"type": "rightAligned", "width": 80}
-    one = DIGITS.format(digits=1)
-    return {
-        "columnDefs": [
-            {"headerName": "Hole", "field": "id", "width": 128, "tooltipField": "id",
-             "pinned": "left"},
-            {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
-             "width": 92, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
-             "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
-                                "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
-            {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
-            {**number, "headerName": "Margin [mm]", "field": "margin", ":valueFormatter": one, "width": 108,
-             "headerTooltip": "by how much the hole could be deeper without a reversal"},
-            {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 78},
-            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 92},
-            {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": 124, "sortable": False},
-            {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": 84, "sortable": False},
-        ],
-        ":getRowId": "p => p.data.id",
-        "rowSelection": {"mode": "singleRow", "checkboxes": False, "enableClickSelection": True},
-        ":navigateToNextCell": STEP,
-        ":isExternalFilterPresent": "() => true",
-        ":doesExternalFilterPass": "() => true",
-        "rowHeight": 28,
-        "headerHeight": 32,
-        "animateRows": False,
-        "suppressColumnMoveAnimation": True,
-        "suppressCellFocus": False,
-        "suppressColumnVirtualisation": True,
-        "tooltipShowDelay": 500,
-        "overlayNoRowsTemplate": "<span>no hole is as the filter asks</span>",
-    }  # fmt: skip
 
 
 def _tools(session: Session, table: _Table) -> None:

@@ -50,7 +50,7 @@ def settings_dialog(session: Session) -> Callable[[], None]:
     Args:
         session: whose job they are of.
     """
-    dialog, card, _ = form("Settings", "settings-form")
+    dialog, card, _ = form("Settings", "settings-form", wide=True)
     fields = Fields()
     with card:
         with ui.element("div").classes("zr-scroll"):

@@ -55,7 +55,7 @@ def summary(session: Session) -> None:
         for figure, text in zip(FIGURES, _figures(line), strict=True):
             cells[figure].set_content(text)
         verdict.set_content(f'<span class="zr-chip zr-{line.tone}"><b>{MARKS[line.tone]}</b> {line.verdict}</span>')
-        why.set_text(line.why)
+        why.set_text("" if session.state.steered else line.why)  # of a motion by hand the map says it
 
     soon = throttled(draw)
 

@@ -265,7 +265,8 @@ class _TwistMap:
             label = f"{branch}"
             if motion is not None:
                 found = motion_look.look(job.robot, job.tool, state.hole, motion.profile, branch, job.settings)
-                label += " · cannot be run" if found.reversals is None else f" · {found.reversals} reversals"
+                count = "cannot be run" if found.reversals is None else f"{found.reversals} reversals"
+                label += f" · {count}" if found.reversals != 1 else " · 1 reversal"
             options.append({"value": str(branch), "label": label})
         self.element.run_method("show_branches", [*options, {"value": "all", "label": "all branches"}])
 
