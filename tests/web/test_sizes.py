@@ -62,6 +62,13 @@ def in_every_size(page):
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), where
         page.get_by_test_id("cell-camera-iso").click()
         assert page.evaluate(COVERED) == [], where
+    page.get_by_test_id("cell-baseline-side").click()  # in the smallest
+    expect(page.locator(".zrc-caption").first).to_have_text("planned: 0 reversals")
+    page.evaluate(SETTLED)
+    assert page.evaluate(CUT) == []
+    readout, half = (page.locator(name).bounding_box() for name in (".zrc-readout", ".zrc-stage"))
+    assert readout["height"] < 0.25 * half["height"], "it hides one of the two robots"
+    page.get_by_test_id("cell-baseline-off").click()
 
 
 def is_drawn(page, hole):
@@ -82,6 +89,14 @@ def test_nothing_is_cut_nor_hidden_in_any_size(demo_page, tmp_path):
     page.locator('input[type="file"]').first.set_input_files(tmp_path / "long.yaml")
     is_drawn(page, "panel_07_lower_skin_stringer_12_rivet_0001")
     in_every_size(page)
+
+    page.get_by_test_id("cell-baseline-side").click()
+    page.get_by_test_id("hole-next").click()  # which is out of reach
+    expect(page.locator(".zrc-caption").first).to_have_text("planned: no motion", timeout=120_000)
+    page.get_by_test_id("hole-before").click()
+    page.get_by_test_id("cell-baseline-off").click()
+    expect(page.get_by_test_id("reversals")).to_have_text("0")
+    page.evaluate(SETTLED)
 
     top = page.locator(".zr-tw-plot").bounding_box()  # at 1024 x 640
     page.get_by_test_id("handle-target").focus()

@@ -8,6 +8,7 @@ import { Track, ribbon } from "zerorev-cell/cell_trace.js";
 
 const VIEWS = { iso: [1, -1.35, 0.75], front: [1, 0, 0.12], side: [0, -1, 0.12], top: [0, -0.001, 1] };
 const SEEKS = 66; // [ms] between two that are told
+const LETTER = 7.2; // [px] of a label, about: to measure one would cost a layout in every frame
 const SELDOM = 2000; // [ms] between two drawings of answers that come one after the other, where drawing is slow
 const REST = 300; // [ms] that a motion in hand has to rest before it is drawn where drawing is slow
 
@@ -66,6 +67,7 @@ export class Cell {
     this.hole = data?.hole ?? null;
     if (!this.track) this.play(false);
     this.bar.setTrack(this.track, this.held, this.data?.colours);
+    this._captions();
     this._showRibbons();
     this.note.hidden = !this.track?.why;
     this.note.textContent = this.track?.why ?? "";
@@ -289,7 +291,8 @@ export class Cell {
 
   _captions() {
     this.captions?.forEach((old) => old.remove());
-    const said = (track) => (track?.reversals == null ? "cannot run" : `${track.reversals} reversal${track.reversals === 1 ? "" : "s"}`);
+    this.root.classList.toggle("zrc-side", this.mode === "side");
+    const said = (track) => (!track ? "no motion" : track.reversals == null ? "cannot run" : `${track.reversals} reversal${track.reversals === 1 ? "" : "s"}`);
     const made = (left, text) => element("div", { class: "zrc-caption", style: `left:${left}` }, text);
     this.captions = this.mode !== "side" ? [] : [element("div", { class: "zrc-divide" }),
       made("25%", `planned: ${said(this.track)}`), made("75%", `constant spin: ${said(this.held)}`)];
@@ -369,7 +372,7 @@ export class Cell {
     const add = (text, at, kind, half = 0, colour = null) => {
       const seen = at.project(this.camera);
       if (seen.z < 1 && Math.abs(seen.x) <= 1 && Math.abs(seen.y) <= 1)
-        wanted.push([text, half * wide + ((seen.x + 1) / 2) * wide, ((1 - seen.y) / 2) * this.high, kind, colour]);
+        wanted.push([text, half * wide + ((seen.x + 1) / 2) * wide, ((1 - seen.y) / 2) * this.high, kind, colour, (half + 1) * wide]);
     };
     const halos = (arm, track, half, when = "") => {
       for (const mark of track?.near(this.x) ?? [])
@@ -384,13 +387,15 @@ export class Cell {
     this.labels.forEach((label, i) => {
       label.hidden = i >= wanted.length;
       if (label.hidden) return;
-      let [text, x, y, kind, colour] = wanted[i];
-      while (taken.some(([a, b]) => Math.abs(a - x) < 110 && Math.abs(b - y) < 22)) y += 22;
-      taken.push([x, y]);
+      let [text, x, y, kind, colour, end] = wanted[i];
+      const left = Math.max(2, Math.min(x + 14, end - 4 - LETTER * text.length - 18));
+      y = Math.max(2, Math.min(y - 10, this.high - 24));
+      while (taken.some(([a, b]) => Math.abs(a - left) < 110 && Math.abs(b - y) < 22)) y += 22;
+      taken.push([left, y]);
       label.textContent = text;
       label.className = `zrc-label ${kind}`;
       label.style.borderColor = colour ?? "";
-      label.style.transform = `translate(${x + 14}px, ${y - 10}px)`;
+      label.style.transform = `translate(${left}px, ${y}px)`;
     });
   }
 }

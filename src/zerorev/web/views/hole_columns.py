@@ -57,17 +57,17 @@ def options(wide: Mapping[str, int]) -> dict[str, Any]:
     one = DIGITS.format(digits=1)
     return {
         "columnDefs": [
-            {"headerName": "Hole", "field": "id", "width": max(128, wide["id"]), "tooltipField": "id",
+            {"headerName": "Hole", "field": "id", "width": max(112, wide["id"]), "tooltipField": "id",
              "pinned": "left", "wrapText": wide["id"] == WIDEST, "autoHeight": wide["id"] == WIDEST},
             {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
              "width": 92, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
              "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
                                 "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
             {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
-            {**number, "headerName": "Margin [mm]", "field": "margin", ":valueFormatter": one, "width": 108,
+            {**number, "headerName": "Margin [mm]", "field": "margin", ":valueFormatter": one, "width": 98,
              "headerTooltip": "by how much the hole could be deeper without a reversal"},
             {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 78},
-            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 92},
+            {**number, "headerName": "Depth [mm]", "field": "depth", "width": 90},
             {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": max(124, wide["target"]),
              "sortable": False},
             {"headerName": "Direction", "field": "direction", "flex": 2, "minWidth": max(84, wide["direction"]),
