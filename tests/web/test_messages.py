@@ -23,6 +23,8 @@ BROKEN = """() => {
         made.textContent = words;
         document.querySelector(".zr-cell").append(made);
     }
+    document.querySelector(".zr-findings").innerHTML = ["error", "warning", "info"].map((level) =>
+        `<p><span class="zr-level zr-${level}">!</span>why</p><p class="zr-${level}">why</p>`).join("");
     window.zerorevEnded();
     document.getElementById("popup").style.display = "";
     document.getElementById("popup").setAttribute("aria-hidden", "false");
@@ -95,6 +97,13 @@ def test_all_that_is_said_is_said_in_full_and_can_be_read(demo_page, tmp_path):
     legible(page)
     with page.expect_download():  # all holes have an answer: nothing is to be confirmed
         from_menu(page, "download-plan")
+
+    page.get_by_test_id("add-hole").click()
+    page.get_by_test_id("hole-x").fill("far")
+    page.get_by_test_id("form-done").click()
+    expect(page.locator("label", has=page.get_by_test_id("hole-x")).get_by_role("alert")).to_be_visible()
+    legible(page)
+    page.get_by_test_id("form-cancel").click()
 
     page.evaluate(BROKEN)
     for name in ("trouble", "ended"):

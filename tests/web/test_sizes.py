@@ -46,6 +46,10 @@ COVERED = f"""() => {{
         return x > card.left && x < card.right && y > card.top && y < card.bottom;
     }}));
 }}"""
+# names of controls that are not there to be read
+NAMES = ("Constant spin", "View", "Speed", "branch")
+UNNAMED = """names => names.filter((name) => ![...document.querySelectorAll(".zrc-name, .zr-tw-tools label")].some(
+    (each) => each.textContent.trim().startsWith(name) && each.checkVisibility({ visibilityProperty: true })))"""
 SETTLED = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 250))))"
 
 
@@ -58,6 +62,7 @@ def in_every_size(page):
             page.evaluate(SETTLED)
             where = f"{width} x {height}, {scheme}"
             assert page.evaluate(CUT) == [], where
+            assert page.evaluate(UNNAMED, NAMES) == [], where
             assert page.evaluate(OUT_OF_SIGHT) == [], where
             assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), where
         page.get_by_test_id("cell-camera-iso").click()
