@@ -10,6 +10,7 @@ from zerorev.errors import InputError
 from zerorev.jobs import plan_job
 from zerorev.model.files import plan_to_json
 from zerorev.model.job import Job, Settings
+from zerorev.model.plan import Finding
 from zerorev.planning import plan, plan_deepest
 from zerorev.web.session import undone
 from zerorev.web.state import (
@@ -172,6 +173,17 @@ def test_a_plan_of_some_holes_says_which_are_missing(job, planned):
     assert (found.level, found.hole) == ("warning", None)
     assert found.message == f"only 1 of 3 holes planned; missing: holes {job.holes[0].id}, {job.holes[2].id}"
     assert plan_of(opened_plan(planned)).findings == planned.findings
+
+
+@pytest.mark.parametrize("level", ["error", "warning"])
+def test_a_plan_that_is_opened_without_all_holes_says_so_when_it_is_made_again(job, planned, level):
+    """`error` is what reading a part says, `warning` what the app says of a plan that was downloaded too soon."""
+    said = Finding(level, "unfinished", "only 2 of 3 holes")
+    state = opened_plan(replace(planned, holes=planned.holes[:2], findings=(*planned.findings, said)))
+    state = with_hole(state, replace(job.holes[2], id="more"))
+    first, second = (each for each in plan_of(state).findings if each.kind == "unfinished")
+    assert (first.level, first.message) == (level, "only 2 of 3 holes (of the plan that was opened)")
+    assert second.message == "only 2 of 3 holes planned; missing: hole more"
 
 
 def test_progress_says_how_fast_and_how_long_yet():

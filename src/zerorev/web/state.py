@@ -52,15 +52,7 @@ class Steered:
 
 @dataclass(frozen=True)
 class Progress:
-    """Long work that is under way.
-
-    Attributes:
-        title: what is done, as the page says it.
-        done: how many things of it are finished.
-        total: of how many.
-        each: what is counted.
-        seconds: since it began.
-    """
+    """Long work under way: what the page calls it, and how many things of how many are finished, in how long [s]."""
 
     title: str
     done: int
@@ -92,6 +84,7 @@ class State:
         progress: of the long work under way, or None.
         trouble: why the last work came to nothing, in one sentence, or None.
         outcome: what the last work on many holes came to, in one sentence, or None.
+        lacking: what the plan that was opened says of holes that it does not have, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
     """
@@ -104,6 +97,7 @@ class State:
     progress: Progress | None = None
     trouble: str | None = None
     outcome: str | None = None
+    lacking: Finding | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
 
@@ -135,7 +129,9 @@ def opened_plan(plan: Plan) -> State:
     holes = tuple(answer.hole for answer in plan.holes)
     job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
-    return State(job, answers, holes[0].id, strokes=plan.strokes)
+    said = [replace(each, message=f"{each.message} (of the plan that was opened)") for each in plan.findings]
+    lacking = next((each for each in said if each.kind == UNFINISHED), None)
+    return State(job, answers, holes[0].id, strokes=plan.strokes, lacking=lacking)
 
 
 def opened_map(cells: MapSlice) -> State:
@@ -278,10 +274,11 @@ def plan_of(state: State) -> Plan:
     job = state.job
     holes = tuple(state.answers[hole.id] for hole in job.holes if hole.id in state.answers)
     plan = unanswered(job, state.strokes, holes)
-    if not (missing := state.unplanned):
-        return plan
-    message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
-    return replace(plan, findings=(*plan.findings, Finding("warning", UNFINISHED, message)))
+    findings = plan.findings if state.lacking is None else (*plan.findings, state.lacking)
+    if missing := state.unplanned:
+        message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
+        findings = (*findings, Finding("warning", UNFINISHED, message))
+    return replace(plan, findings=findings)
 
 
 def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:

@@ -87,9 +87,8 @@ def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
         _list(missing)
         with ui.element("div").classes("zr-ends"):
             ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
-            ui.button(f"Download with {_of(count, of)}", icon="download", on_click=agreed).props(
-                'unelevated no-caps data-testid="save-incomplete"'
-            )
+            words = f"Download with {_of(count, of)}" if count < of else "Download all the same"
+            ui.button(words, icon="download", on_click=agreed).props('unelevated no-caps data-testid="save-incomplete"')
     dialog.on("hide", dialog.delete)
     dialog.open()
 
@@ -200,7 +199,11 @@ def _make(
 def _offer(program: Exported, of: int) -> None:
     """Show what the preflight found, and which of so many holes are missing, then hand the program out."""
     name = f"{program.name}{program.suffix}"
-    whole = program.holes == of
+    lacking = ""
+    if program.holes < of:
+        lacking = f"The program drills {_of(program.holes, of)}."
+    elif any(finding.kind == UNFINISHED for finding in program.findings):
+        lacking = "The program does not have all holes of the job."
 
     def save() -> None:
         ui.download.content(program.text, name, "text/plain")
@@ -208,8 +211,8 @@ def _offer(program: Exported, of: int) -> None:
 
     dialog, inside, _ = form(f"Before {name} runs", "preflight", wide=True)
     with inside:
-        if not whole:
-            ui.label(f"The program drills {_of(program.holes, of)}.").classes("zr-lacking").props('role="alert"')
+        if lacking:
+            ui.label(lacking).classes("zr-lacking").props('role="alert"')
         if program.findings:
             ui.label("The preflight found:")
             _list(program.findings)
@@ -218,9 +221,9 @@ def _offer(program: Exported, of: int) -> None:
         ui.label("The program has not run on a robot yet: try it in T1 first.").classes("zr-muted")
         with ui.element("div").classes("zr-ends"):
             ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
-            words = f"Download {name}" if whole else f"Download {name} with {_of(program.holes, of)}"
+            words = f"Download {name} with {_of(program.holes, of)}" if program.holes < of else f"Download {name}"
             ui.button(words, icon="download", on_click=save).props(
-                f'unelevated no-caps {"autofocus" if whole else ""} data-testid="save-program"'
+                f'unelevated no-caps {"" if lacking else "autofocus"} data-testid="save-program"'
             )
     dialog.on("hide", dialog.delete)
     dialog.open()
@@ -241,7 +244,7 @@ def _refused(error: NotExportableError, leave_out: Callable[[], None], *, can_sk
                     ui.label(reason)
         with ui.element("div").classes("zr-ends"):
             ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
-            if can_skip:
+            if can_skip and not any(reason.startswith("the plan:") for reason in error.reasons):
                 ui.button("Leave these out", on_click=without).props('unelevated no-caps data-testid="leave-out"')
     dialog.on("hide", dialog.delete)
     dialog.open()
