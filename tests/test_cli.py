@@ -158,7 +158,7 @@ class TestPlan:
         job = write_job()
         before = job.read_text()
         assert main(["plan", str(job), "-o", str(job)]) == cli.BAD_INPUT
-        one_message(capsys, "the file that is read")
+        one_message(capsys, "which is read")
         assert job.read_text() == before
 
     def test_an_interrupt_leaves_nothing(self, write_job, tmp_path, capsys, monkeypatch):

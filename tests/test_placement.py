@@ -22,7 +22,7 @@ from zerorev.model.files import job_from_dict
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.moved_job import write_job
-from zerorev.model.text import yaml_document, yaml_text
+from zerorev.model.yaml_text import yaml_document, yaml_text
 from zerorev.placement.freedom import AXES, Freedom, frame_at, job_at
 from zerorev.placement.search import KEPT, place, placements
 from zerorev.report.placement import placement_data

@@ -5,6 +5,8 @@ What is wrong with one hole of many is not an exception but a `zerorev.model.pla
 
 from __future__ import annotations
 
+from zerorev.visible import visible
+
 __all__ = ["InputError", "NotExportableError", "OutputError", "ZerorevError"]
 
 
@@ -24,11 +26,11 @@ class InputError(ZerorevError):
     def __init__(self, what: str, *, where: str = "", accepted: str = "") -> None:
         self.what, self.where, self.accepted = what, where, accepted
         text = f"{where}: {what}" if where else what
-        super().__init__(f"{text} (accepted: {accepted})" if accepted else text)
+        super().__init__(visible(f"{text} (accepted: {accepted})" if accepted else text))
 
 
 class OutputError(ZerorevError):
-    """A file that cannot be written; nothing was left half-written.
+    """A file or a folder that cannot be written; what was there before is as it was.
 
     Attributes:
         path: the file that was asked for.
@@ -37,7 +39,7 @@ class OutputError(ZerorevError):
 
     def __init__(self, path: str, why: str) -> None:
         self.path, self.why = path, why
-        super().__init__(f"cannot write {path}: {why}; nothing was written")
+        super().__init__(visible(f"cannot write {path}: {why}; what was there is unchanged"))
 
 
 class NotExportableError(ZerorevError):
@@ -49,4 +51,4 @@ class NotExportableError(ZerorevError):
 
     def __init__(self, reasons: tuple[str, ...]) -> None:
         self.reasons = reasons
-        super().__init__("not exported, because\n" + "\n".join(f"  - {reason}" for reason in reasons))
+        super().__init__(visible("not exported, because\n" + "\n".join(f"  - {reason}" for reason in reasons)))

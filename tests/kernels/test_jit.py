@@ -1,4 +1,4 @@
-"""The cache of compiled kernels: what another version has left in it does no harm."""
+"""How kernels are compiled: each once, and to the same digits in every process; what they may not do."""
 
 from __future__ import annotations
 
@@ -12,59 +12,8 @@ import numpy as np
 import pytest
 
 from zerorev.kernels import _jit
-from zerorev.kernels.order import order_of
-
-MODULE = """
-from typing import NamedTuple
-from zerorev.kernels._jit import kernel
-
-class {name}(NamedTuple):
-    depth: float
-
-@kernel
-def twice(asked):
-    return 2.0 * asked.depth
-
-print(twice({name}(21.0)))
-"""
-
 
 compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
-
-
-@compiled
-def test_a_kernel_is_stale_once_another_file_of_kernels_changes(monkeypatch: pytest.MonkeyPatch):
-    """Numba looks at a kernel's own file alone; but what it calls from other files is compiled into it."""
-
-    def cached() -> dict[object, object]:
-        return _jit._Cache(order_of.py_func)._cache_file._load_index()
-
-    order_of(np.zeros(3))
-    assert cached()
-    (name, when, size), *others = _jit._stamp()
-    monkeypatch.setattr(_jit, "_stamp", lambda: ((name, when + 1.0, size), *others))
-    assert not cached()
-
-
-@compiled
-def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(tmp_path: Path):
-    def run(name: str) -> str:
-        (tmp_path / "asking.py").write_text(MODULE.format(name=name))
-        done = subprocess.run(
-            [sys.executable, "-c", "import asking"],
-            cwd=tmp_path,
-            env={**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        return done.stdout
-
-    assert run("Asked") == run("Wanted") == "42.0\n"
-    index = next((tmp_path / "cache").rglob("*.nbi")).read_bytes()
-    assert b"Wanted" in index
-    assert b"Asked" not in index
 
 
 @compiled

@@ -40,7 +40,7 @@ def test_a_file_is_no_folder(tmp_path):
     (tmp_path / "f").touch()
     with pytest.raises(OutputError, match="it is a file"):
         output.check_folder(tmp_path / "f")
-    with pytest.raises(OutputError, match="does not exist"):
+    with pytest.raises(OutputError, match="is no folder"):
         output.check_folder(tmp_path / "f" / "g")
 
 

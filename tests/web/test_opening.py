@@ -11,7 +11,8 @@ import zerorev
 from zerorev.errors import InputError
 from zerorev.jobs import plan_job
 from zerorev.model.files import job_from_text, plan_to_json, read_job, write_plan
-from zerorev.model.text import json_text, yaml_text
+from zerorev.model.text import json_text
+from zerorev.model.yaml_text import yaml_text
 from zerorev.web.opening import demo, opened, opened_text
 from zerorev.web.state import plan_of
 

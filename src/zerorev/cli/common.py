@@ -80,15 +80,17 @@ Whole = Annotated[int, Parameter(converter=_whole)]
 
 def check_outputs(outputs: Iterable[Path | None], *sources: Path) -> None:
     """Refuse, before any work is done, files that could not be written, and to write over a file that is read."""
-    from zerorev.model.output import check_file
+    from zerorev.model.output import check_file, place_of
 
+    taken: list[Path] = []
     for output in outputs:
         if output is None:
             continue
-        check_file(output)
-        for source in sources:
-            if output.exists() and source.exists() and output.samefile(source):
-                raise OutputError(str(output), "it is the file that is read")
+        check_file(output, *sources)
+        place = place_of(output)
+        if place in taken:
+            raise OutputError(str(output), "two outputs would be one file")
+        taken.append(place)
 
 
 def numbers(text: str, where: str) -> list[float]:

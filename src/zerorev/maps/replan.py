@@ -52,7 +52,8 @@ def question_of(found: Dataset) -> Question:
             attributes.get("seed", 0),
         )
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"has attributes that cannot be used: {error}", accepted="a map of zerorev map") from None
+        what = f"has attributes that cannot be used ({type(error).__name__}: {str(error).splitlines()[0]})"
+        raise InputError(what, accepted="a map of zerorev map") from None
 
 
 def hole_of(found: Dataset, **index: int) -> Hole:

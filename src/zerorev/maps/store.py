@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from zerorev.errors import InputError
 from zerorev.maps.parameter_map import AXES, FORMAT
+from zerorev.maps.sound import MARK, check_store
 from zerorev.model.output import write_whole_folder
 
 if TYPE_CHECKING:
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 __all__ = ["MARK", "read_map", "write_map"]
 
 VARIABLES = {"score", "reversals", "branch", "travel_deg"}
-MARK = "zarr.json"  # what a folder of zarr holds, and by which an older map is known that may be replaced
 CHUNK_TARGETS = 8
 
 
@@ -48,10 +48,9 @@ def read_map(path: str | Path) -> Dataset:
     import xarray
 
     accepted = "a folder written by zerorev parameter-map"
-    if not (Path(path) / MARK).is_file():
-        raise InputError("no folder of zarr", where=str(path), accepted=accepted)
+    check_store(Path(path), accepted)
     try:
-        with xarray.open_zarr(path, chunks=None, consolidated=False) as stored:
+        with xarray.open_zarr(path, chunks=None, consolidated=False, zarr_format=3, decode_times=False) as stored:
             found: Dataset = stored.load()
     except Exception as error:  # what the libraries raise on a damaged store is of many kinds
         raise InputError(f"cannot be read: {error}", where=str(path), accepted=accepted) from None

@@ -18,6 +18,7 @@ import numpy as np
 from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
+from zerorev.maps.sound import MARK, check_grid, check_store
 from zerorev.model._units import mm, plain
 from zerorev.model.conversion import robot_data, settings_data, tool_data
 from zerorev.model.map_task import NEED_DEPTH, SWARMS, MapTask
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["FORMAT", "MARK", "MapStore", "read_workspace_map"]
 
 FORMAT = "zerorev.map/1"
-MARK = "zarr.json"
 SETTINGS = ("min_rate_deg_per_mm", "psi_bound_deg", "legs", "max_twist_deg_per_mm")
 CHECKSUM_BYTES = 4
 FILE_BLOCK = 4096  # bytes by which a disk gives room
@@ -184,14 +184,14 @@ def read_head(path: str | Path) -> Dataset:
     """
     import xarray
 
-    if not (Path(path) / MARK).is_file():
-        raise InputError("no folder of zarr", where=str(path), accepted=ACCEPTED)
+    check_store(Path(path), ACCEPTED)
     try:
-        found: Dataset = xarray.open_zarr(path, chunks=None, consolidated=False)
+        found: Dataset = xarray.open_zarr(path, chunks=None, consolidated=False, zarr_format=3, decode_times=False)
     except Exception as error:  # what the libraries raise on a damaged store is of many kinds
         raise InputError(f"cannot be read: {error}", where=str(path), accepted=ACCEPTED) from None
     if found.attrs.get("format") != FORMAT:
         raise InputError("not a workspace map", where=str(path), accepted=ACCEPTED)
+    check_grid(found, Path(path), ACCEPTED)
     return found
 
 

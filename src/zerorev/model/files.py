@@ -23,9 +23,10 @@ from zerorev.model.plan_data import FORMS, plan_data
 from zerorev.model.plan_schema import DepthFile, PlanFile
 from zerorev.model.robot import Robot
 from zerorev.model.schema import Form, HoleForm, JobFile, RobotFile, SettingsForm, ToolFile
-from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text, yaml_document
+from zerorev.model.text import Document, csv_rows, json_document, json_text, read_text
 from zerorev.model.tool import Tool
 from zerorev.model.validation import checked, inside
+from zerorev.model.yaml_text import yaml_document
 
 __all__ = [
     "job_from_dict",

@@ -15,7 +15,7 @@ from zerorev.model.files import read_robot, robot_names
 from zerorev.model.hole import REFERENCES, Hole, psi_zero_vector
 from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
-from zerorev.model.text import yaml_text
+from zerorev.model.yaml_text import yaml_text
 
 __all__ = ["job_files"]
 

@@ -14,8 +14,9 @@ from zerorev.model.files import read_robot, read_tool
 from zerorev.model.job import Settings
 from zerorev.model.map_schema import MOST_CELLS, ConesForm, MapFile, RangeForm, SphereForm
 from zerorev.model.map_task import SWARMS, MapTask, Question, cone, sphere
-from zerorev.model.text import Document, csv_rows, read_text, yaml_document
+from zerorev.model.text import Document, csv_rows, read_text
 from zerorev.model.validation import checked, inside
+from zerorev.model.yaml_text import yaml_document
 
 __all__ = ["read_map_file"]
 

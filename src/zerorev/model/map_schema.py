@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from zerorev.model.schema import Form, Name, NotNegative, Positive, Three, ToolForm, kind
+from zerorev.model.schema import Depth, Form, Length, Name, Rate, SpinBound, Three, ToolForm, Twist, kind
 
 __all__ = ["MOST_CELLS", "ConeForm", "ConesForm", "MapFile", "RangeForm", "SphereForm", "TargetsForm"]
 
@@ -22,13 +22,14 @@ Count = Annotated[int, Field(ge=1, le=100_000)]
 class RangeForm(Form):
     """Evenly spaced values."""
 
-    start: float = Field(description="a number [mm]: the first")
-    stop: float = Field(description="a number [mm], start or more: the last, where a step meets it")
-    step: Positive = Field(description="a number above 0 [mm]: from one to the next")
+    start: Length = Field(description="a number [mm]: the first")
+    stop: Length = Field(description="a number [mm], start or more: the last, where a step meets it")
+    step: Depth = Field(description="a number above 0 [mm]: from one to the next")
 
 
 Axis = Annotated[
-    Annotated[list[float], Field(min_length=1), Tag("<list>")] | Annotated[RangeForm, Tag("<mapping>")],
+    Annotated[list[Length], Field(min_length=1, fail_fast=True), Tag("<list>")]
+    | Annotated[RangeForm, Tag("<mapping>")],
     Discriminator(kind),
 ]
 AXIS = "one number or more in a list, or a mapping of start, stop and step [mm]"
@@ -103,21 +104,21 @@ class MapFile(Form):
         description="deepest, fewest_reversals, least_travel, greatest_margin, twist_spread, thesis_bisection or"
         " thesis_stepping",
     )
-    depth_mm: Positive | None = Field(
+    depth_mm: Depth | None = Field(
         default=None,
         description="a number above 0 [mm]: the stroke; for fewest_reversals, least_travel and greatest_margin alone",
     )
     legs: Literal["straight", "free"] = Field(
         default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
     )
-    min_rate_deg_per_mm: NotNegative = Field(
+    min_rate_deg_per_mm: Rate = Field(
         default=0.01,
         description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
     )
-    psi_bound_deg: Positive | None = Field(
+    psi_bound_deg: SpinBound | None = Field(
         default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
     )
-    max_twist_deg_per_mm: Positive = Field(
+    max_twist_deg_per_mm: Twist = Field(
         default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
     )
     seed: Annotated[int, Field(ge=0)] | None = Field(

@@ -12,7 +12,8 @@ from zerorev.model._arrays import Array, rpy_of
 from zerorev.model._units import deg, mm, plain
 from zerorev.model.output import check_file, write_text
 from zerorev.model.schema import HoleForm
-from zerorev.model.text import csv_rows, read_text, yaml_document, yaml_text
+from zerorev.model.text import csv_rows, read_text
+from zerorev.model.yaml_text import yaml_document, yaml_text
 
 __all__ = ["check_new_job", "frame_text", "write_job"]
 

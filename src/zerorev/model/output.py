@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import stat
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,21 +12,55 @@ from pathlib import Path
 from zerorev.errors import OutputError
 
 __all__ = [
-    "as_output_error", "check_file", "check_folder", "check_whole_folder", "make_folder", "write_bytes", "write_pieces",
-    "write_text", "write_whole_folder",
+    "as_output_error", "check_file", "check_folder", "check_whole_folder", "make_folder", "place_of",
+    "write_bytes", "write_pieces", "write_text", "write_whole_folder",
 ]  # fmt: skip
 
 
-def check_file(path: str | Path) -> None:
-    """Make sure, before long work, that a file can be written there.
+MOST_LINKS = 40
+
+
+def place_of(path: str | Path) -> Path:
+    """Where a path leads to, through links to what they stand for: what is checked there is what is written there.
 
     Raises:
-        OutputError: no such folder, a folder of that name, no permission.
+        OutputError: a folder on the way does not exist, so that `nodir/../plan.json` is no other name of plan.json.
     """
     with as_output_error(path):
-        target = Path(os.path.realpath(path))
-        if not target.parent.is_dir():
-            raise OutputError(str(path), f"the folder {target.parent} does not exist")
+        target = Path(path)
+        for _ in range(MOST_LINKS):
+            try:
+                folder = Path(os.path.realpath(target.parent, strict=True))
+            except FileNotFoundError:
+                raise OutputError(str(path), f"the folder {target.parent} does not exist") from None
+            if not folder.is_dir():
+                raise OutputError(str(path), f"{target.parent} is no folder")
+            target = folder / target.name
+            if not stat.S_ISLNK(_mode(target)):
+                return target
+            target = target.parent / target.readlink()
+        raise OutputError(str(path), "its links lead in a circle")
+
+
+def _mode(path: Path) -> int:
+    """What is there, without following it; 0: nothing."""
+    try:
+        return os.lstat(path).st_mode
+    except FileNotFoundError:
+        return 0
+
+
+def check_file(path: str | Path, *sources: str | Path) -> None:
+    """Make sure, before long work, that a file can be written there, and that it is none of those that are read.
+
+    Raises:
+        OutputError: no such folder, a folder of that name, no permission, one of the sources.
+    """
+    with as_output_error(path):
+        target = place_of(path)
+        for source in sources:
+            if target.exists() and Path(source).exists() and target.samefile(source):
+                raise OutputError(str(path), f"it is {source}, which is read")
         if target.exists() and not target.is_file():
             raise OutputError(str(path), "it is a folder" if target.is_dir() else "it is not a regular file")
         _check_access(path, target if target.exists() else target.parent)
@@ -39,11 +74,9 @@ def check_folder(path: str | Path) -> None:
         OutputError: no such parent folder, a file of that name, no permission.
     """
     with as_output_error(path):
-        target = Path(os.path.realpath(path))
+        target = place_of(path)
         if target.exists() and not target.is_dir():
             raise OutputError(str(path), "it is a file, not a folder")
-        if not target.exists() and not target.parent.is_dir():
-            raise OutputError(str(path), f"the folder {target.parent} does not exist")
         _check_access(path, target if target.exists() else target.parent)
 
 
@@ -55,7 +88,7 @@ def make_folder(path: str | Path) -> None:
     """
     check_folder(path)
     with as_output_error(path):
-        Path(path).mkdir(exist_ok=True)
+        place_of(path).mkdir(exist_ok=True)
 
 
 def check_whole_folder(path: str | Path, mark: str) -> None:
@@ -66,7 +99,7 @@ def check_whole_folder(path: str | Path, mark: str) -> None:
     """
     check_folder(path)
     with as_output_error(path):
-        target = Path(os.path.realpath(path))
+        target = place_of(path)
         if target.exists() and any(target.iterdir()) and not (target / mark).is_file():
             raise OutputError(str(path), f"it is a folder without {mark}, which holds something else")
         _check_access(path, target.parent)
@@ -85,7 +118,7 @@ def write_whole_folder(path: str | Path, mark: str, fill: Callable[[Path], None]
     """
     check_whole_folder(path, mark)
     with as_output_error(path):
-        target = Path(os.path.realpath(path))
+        target = place_of(path)
         beside, before = (target.with_name(f".{target.name}.{os.getpid()}.{end}") for end in ("tmp", "old"))
         beside.mkdir()
         try:
@@ -136,7 +169,7 @@ def write_pieces(path: str | Path, pieces: Iterable[str]) -> None:
 def _write(path: str | Path, pieces: Iterable[bytes]) -> None:
     check_file(path)
     with as_output_error(path):
-        target = Path(os.path.realpath(path))  # through a link to the file it stands for
+        target = place_of(path)
         beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
             with beside.open("xb") as stream:

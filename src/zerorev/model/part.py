@@ -10,7 +10,9 @@ import hashlib
 import json
 import os
 import sys
+import zlib
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
@@ -29,7 +31,8 @@ from zerorev.model.validation import checked
 
 __all__ = ["Part", "part_document"]
 
-FORMAT = "zerorev.part/1"
+FORMAT = "zerorev.part/2"
+SUM = 9  # [bytes] at the end of a line: a blank, and the CRC-32 of what stands before it
 
 
 class Part:
@@ -54,6 +57,7 @@ class Part:
         """
         check_file(target)
         self.path, self.done = Path(f"{target}.part"), 0
+        check_file(self.path)
         self._target, self._strokes = target, plan.strokes
         self._form: type[PlanHole] | type[DepthHole] = PlanHole if plan.strokes == "asked" else DepthHole
         self._head = plan_head(plan)
@@ -133,7 +137,8 @@ class Part:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         if not self.done:
             self.path.unlink(missing_ok=True)
-        self._stream.close()
+        with suppress(OSError):  # what could not be written, as on a full disk, it would try to write again
+            self._stream.close()
 
 
 def part_document(text: str, file: str) -> Document | None:
@@ -148,27 +153,37 @@ def part_document(text: str, file: str) -> Document | None:
     """
     if not text.startswith(f'{{"format": "{FORMAT}"'):
         return None
-    first, *entries = [entry for _, entry in _sound(text.encode().splitlines(keepends=True))]
-    if not entries:
-        raise InputError("holds no finished hole", where=file, accepted="one finished hole or more")
-    head = dict(first["head"])
-    message = f"only {len(entries)} of {first['holes']} holes are finished; the command that began it goes on with it"
-    finding = {"level": "error", "kind": UNFINISHED, "message": message, "hole": None}
-    return Document(file, head | {"holes": entries, "findings": [*head["findings"], finding]})
+    entries = [entry for _, entry in _sound(text.encode().splitlines(keepends=True))]
+    match entries:
+        case [{"head": {"findings": [*findings], **head}, "holes": int(count)}, _, *_]:
+            message = (
+                f"only {len(entries) - 1} of {count} holes are finished; the command that began it goes on with it"
+            )
+            unfinished = {"level": "error", "kind": UNFINISHED, "message": message, "hole": None}
+            return Document(file, head | {"holes": entries[1:], "findings": [*findings, unfinished]})
+    raise InputError("holds no finished hole", where=file, accepted="one finished hole or more")
 
 
 def _line(data: dict[str, Any]) -> bytes:
-    return json.dumps(data, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+    entry = json.dumps(data, ensure_ascii=False, allow_nan=False).encode()
+    return entry + _sum(entry) + b"\n"
+
+
+def _sum(entry: bytes) -> bytes:
+    return b" %08x" % zlib.crc32(entry)
 
 
 def _sound(lines: Iterable[bytes]) -> Iterator[tuple[bytes, dict[str, Any]]]:
     """The lines up to the first that is cut short or damaged, each with what it holds."""
     for line in lines:
-        try:
-            entry = json.loads(line)
-        except ValueError:
+        text, end = line[: -SUM - 1], line[-SUM - 1 :]
+        if end != _sum(text) + b"\n":
             return
-        if not line.endswith(b"\n") or not isinstance(entry, dict):
+        try:
+            entry = json.loads(text)
+        except (ValueError, RecursionError):
+            return
+        if not isinstance(entry, dict):
             return
         yield line, entry
 

@@ -7,16 +7,21 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from zerorev.model.schema import (
+    MOST_HOLES,
     Branch,
-    Breakpoints,
+    Depth,
     Form,
     FrameForm,
+    Many,
     Name,
     NotNegative,
-    Positive,
+    PlaceMm,
     RobotForm,
     SettingsForm,
     Six,
+    SpinsDeg,
+    StandoffsMm,
+    Text,
     Three,
     ToolForm,
 )
@@ -57,9 +62,9 @@ class FindingForm(Form):
     """Something a user should know."""
 
     level: Literal["error", "warning", "info"] = Field(description="error, warning or info")
-    kind: str = Field(description="text: a fixed word for machines")
-    message: str = Field(description="text: one sentence for people")
-    hole: str | None = Field(description="text: the hole's id; or null: the whole plan is meant")
+    kind: Text = Field(description="text: a fixed word for machines")
+    message: Text = Field(description="text: one sentence for people")
+    hole: Text | None = Field(description="text: the hole's id; or null: the whole plan is meant")
 
 
 class CriteriaForm(Form):
@@ -98,8 +103,8 @@ class EventForm(Form):
 class GivenForm(Form):
     """What the job fixed beforehand."""
 
-    standoff_mm: Breakpoints | None = Field(description="stand-offs [mm] of the given motion, in order; or null")
-    psi_deg: Breakpoints | None = Field(description="spins [deg] of the given motion; or null: it was searched for")
+    standoff_mm: StandoffsMm | None = Field(description="stand-offs [mm] of the given motion, in order; or null")
+    psi_deg: SpinsDeg | None = Field(description="spins [deg] of the given motion; or null: it was searched for")
     branch: Branch | None = Field(description="a whole number from 0 to 7: the branch asked for; or null: any")
 
 
@@ -109,7 +114,7 @@ class JointsDegForm(Form):
     start: Six = Field(description="six numbers [deg] at the start")
     target: Six = Field(description="six numbers [deg] at the corner")
     end: Six = Field(description="six numbers [deg] at the end")
-    breakpoints: Annotated[list[Six], Field(min_length=3)] = Field(
+    breakpoints: Annotated[list[Six], Field(min_length=3, max_length=10_000, fail_fast=True)] = Field(
         description="six numbers [deg] for each entry of standoff_mm"
     )
 
@@ -153,7 +158,7 @@ class VerifiedForm(Form):
     min_limit_distance_deg: float | None = Field(
         description="a number [deg]: least distance to a joint limit; null: undefined"
     )
-    failures: list[str] = Field(description="a list of text: one sentence a failed check")
+    failures: Many[Text] = Field(description="a list of text: one sentence a failed check")
 
 
 class CertificateForm(Form):
@@ -171,7 +176,7 @@ class CertificateForm(Form):
         description="six numbers [deg/mm]: in the blends no joint moves slower; null without one"
     )
     limit_distance_deg: SixMeasured = Field(description="six numbers [deg]: no joint comes nearer to a limit")
-    reasons: list[str] = Field(description="a list of text: what is refuted or undecided, one sentence each")
+    reasons: Many[Text] = Field(description="a list of text: what is refuted or undecided, one sentence each")
 
 
 class WithinForm(Form):
@@ -185,9 +190,9 @@ class PlanHole(Form):
     """One hole's answer; what describes a motion is null where there is none."""
 
     id: Name = Field(description="text: the hole's id")
-    target_mm: Three = Field(description="three numbers [mm]: bottom of the stroke, base frame")
+    target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, base frame")
     direction: Three = Field(description="three numbers: unit vector into the material, base frame")
-    depth_mm: Positive = Field(description="a number above 0 [mm]: the stroke")
+    depth_mm: Depth = Field(description="a number above 0 [mm]: the stroke")
     deepest_mm: NotNegative | None = Field(
         default=None,
         description="a number [mm]: the deepest stroke without a reversal, 0: none; or null: not looked for",
@@ -206,12 +211,12 @@ class PlanHole(Form):
         description="planned (searched for), evaluated (given and looked at) or infeasible (no motion at all)"
     )
     branch: Branch | None = Field(description="a whole number from 0 to 7: the IK branch")
-    standoff_mm: Breakpoints | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
-    psi_deg: Breakpoints | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
+    standoff_mm: StandoffsMm | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
+    psi_deg: SpinsDeg | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
     joints_deg: JointsDegForm | None = Field(description="a mapping of start, target, end and breakpoints")
     reversals: Annotated[int, Field(ge=0)] | None = Field(description="a whole number: reversals of all joints")
     reversals_per_joint: SixCounts | None = Field(description="six whole numbers")
-    events: list[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
+    events: Many[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
     travel_deg: NotNegative | None = Field(description="a number [deg]: sum over the joints of the angle moved")
     min_rate_deg_per_mm: SixMeasured | None = Field(
         description="six numbers [deg/mm]: slowest motion of each joint at any point; null: undefined"
@@ -253,7 +258,7 @@ class PlanHole(Form):
     criteria: CriteriaForm | None = Field(
         default=None, description="a mapping of what the criteria measure of the motion; or null: it was not measured"
     )
-    findings: list[FindingForm] = Field(description="a list of level, kind, message and hole")
+    findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 
 
 class DepthHole(Form):
@@ -275,7 +280,7 @@ class PlanHead(Form):
     tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
     part_frame: FrameForm = Field(description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame")
     settings: SettingsForm = Field(description="a mapping of the job's settings")
-    findings: list[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")
+    findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")
 
 
 class PlanFile(PlanHead):
@@ -284,7 +289,9 @@ class PlanFile(PlanHead):
     model_config = ConfigDict(title="zerorev plan")
 
     format: Literal["zerorev.plan/1"] = Field(description="zerorev.plan/1")
-    holes: list[PlanHole] = Field(min_length=1, description="a list of one hole or more, in the job's order")
+    holes: Many[PlanHole] = Field(
+        min_length=1, max_length=MOST_HOLES, description="a list of one hole or more, in the job's order"
+    )
 
 
 class DepthFile(PlanHead):
@@ -293,6 +300,8 @@ class DepthFile(PlanHead):
     model_config = ConfigDict(title="zerorev depth")
 
     format: Literal["zerorev.depth/1"] = Field(description="zerorev.depth/1")
-    holes: list[DepthHole] = Field(
-        min_length=1, description="a list of id, deepest_mm and plan of one hole or more, in the job's order"
+    holes: Many[DepthHole] = Field(
+        min_length=1,
+        max_length=MOST_HOLES,
+        description="a list of id, deepest_mm and plan of one hole or more, in the job's order",
     )

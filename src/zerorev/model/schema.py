@@ -6,14 +6,42 @@ Schemas (docs/schemas) both show it.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+
+from zerorev.visible import one_line
 
 __all__ = [
-    "Form", "FrameForm", "HoleForm", "JobFile", "Name", "NotNegative", "Positive", "RobotFile", "RobotForm",
-    "SettingsForm", "Three", "ToolFile", "ToolForm", "kind",
+    "MOST_HOLES",
+    "Angle",
+    "Depth",
+    "Form",
+    "FrameForm",
+    "HoleForm",
+    "JobFile",
+    "Length",
+    "Many",
+    "Name",
+    "NotNegative",
+    "PlaceMm",
+    "Positive",
+    "Rate",
+    "RobotFile",
+    "RobotForm",
+    "SettingsForm",
+    "SpinBound",
+    "Text",
+    "Three",
+    "ToolFile",
+    "ToolForm",
+    "Twist",
+    "kind",
 ]  # fmt: skip
+
+Entry = TypeVar("Entry")
+
+MOST_HOLES = 100_000
 
 
 def _id_text(value: object) -> object:
@@ -21,19 +49,38 @@ def _id_text(value: object) -> object:
 
 
 def kind(value: object) -> str | None:
-    """The tag of a union's member; every tag starts with '<', so that messages can leave it out of a field's path."""
+    """The tag of a union's member; `validation.TAGS` has all of them, so that messages can leave them out of a path."""
     tags: dict[type, str] = {str: "<text>", list: "<list>", dict: "<mapping>"}
     return tags.get(type(value))
 
 
-Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
+Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
 Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
-Three = Annotated[list[float], Field(min_length=3, max_length=3)]
-Six = Annotated[list[float], Field(min_length=6, max_length=6)]
-SixPositive = Annotated[list[Annotated[float, Field(gt=0)]], Field(min_length=6, max_length=6)]
-Breakpoints = Annotated[list[float], Field(min_length=3)]
-Positive = Annotated[float, Field(gt=0)]
+Text = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
+Many = Annotated[
+    list[Entry], Field(fail_fast=True)
+]  # no more is said of a long list than what is wrong with the first bad entry
+
+# Far beyond any arm, and near enough that no number overflows and no search takes hours.
+Length = Annotated[float, Field(ge=-1e6, le=1e6)]  # [mm]
+Depth = Annotated[float, Field(gt=0, le=1e6)]  # [mm]
+Stretch = Annotated[float, Field(ge=0, le=1e6)]  # [mm]
+Angle = Annotated[float, Field(ge=-36_000, le=36_000)]  # [deg]
+SpinBound = Annotated[float, Field(gt=0, le=3_600)]  # [deg]
+Rate = Annotated[float, Field(ge=0, le=1e4)]  # [deg/mm]
+Twist = Annotated[float, Field(gt=0, le=1e4)]  # [deg/mm]
+Positive = Annotated[float, Field(gt=0, le=1e12)]
 NotNegative = Annotated[float, Field(ge=0)]
+
+Three = Annotated[list[float], Field(min_length=3, max_length=3)]
+PlaceMm = Annotated[list[Length], Field(min_length=3, max_length=3)]
+AnglesDeg = Annotated[list[Angle], Field(min_length=3, max_length=3)]
+Six = Annotated[list[float], Field(min_length=6, max_length=6)]
+SixDeg = Annotated[list[Angle], Field(min_length=6, max_length=6)]
+SixPositive = Annotated[list[Positive], Field(min_length=6, max_length=6)]
+Breakpoints = Annotated[list[float], Field(min_length=3, max_length=10_000, fail_fast=True)]
+StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=10_000, fail_fast=True)]
+SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=10_000, fail_fast=True)]
 Branch = Annotated[int, Field(ge=0, le=7)]
 
 
@@ -50,13 +97,13 @@ class Form(BaseModel):
 class GeometryForm(Form):
     """The seven lengths of Brandstoetter, Angerer, Hofbaur (2014), fig. 1."""
 
-    a1: float = Field(description="a number [mm]: shoulder forward of axis 1")
-    a2: float = Field(description="a number [mm]: elbow offset")
-    b: float = Field(description="a number [mm]: lateral offset")
-    c1: float = Field(description="a number [mm]: height of the shoulder")
-    c2: float = Field(gt=0, description="a number above 0 [mm]: upper arm")
-    c3: float = Field(description="a number [mm]: forearm")
-    c4: float = Field(description="a number [mm]: wrist centre to flange")
+    a1: Length = Field(description="a number [mm]: shoulder forward of axis 1")
+    a2: Length = Field(description="a number [mm]: elbow offset")
+    b: Length = Field(description="a number [mm]: lateral offset")
+    c1: Length = Field(description="a number [mm]: height of the shoulder")
+    c2: Depth = Field(description="a number above 0 [mm]: upper arm")
+    c3: Length = Field(description="a number [mm]: forearm")
+    c4: Length = Field(description="a number [mm]: wrist centre to flange")
 
 
 class JointsForm(Form):
@@ -64,9 +111,9 @@ class JointsForm(Form):
 
     names: Annotated[list[Name], Field(min_length=6, max_length=6)] = Field(description="six names, e.g. A1 to A6")
     sign: Annotated[list[int], Field(min_length=6, max_length=6)] = Field(description="six of 1 or -1")
-    offset_deg: Six = Field(description="six numbers [deg]")
-    lower_deg: Six = Field(description="six numbers [deg]: the lower joint limits")
-    upper_deg: Six = Field(description="six numbers [deg]: the upper joint limits")
+    offset_deg: SixDeg = Field(description="six numbers [deg]")
+    lower_deg: SixDeg = Field(description="six numbers [deg]: the lower joint limits")
+    upper_deg: SixDeg = Field(description="six numbers [deg]: the upper joint limits")
     speed_deg_s: SixPositive = Field(description="six numbers above 0 [deg/s]: the greatest joint speeds")
 
 
@@ -74,8 +121,8 @@ class RobotForm(Form):
     """The numbers of a robot."""
 
     name: Name = Field(description="text: how jobs call the robot")
-    manufacturer: str = Field(default="", description="text: who makes it")
-    model: str = Field(default="", description="text: the maker's name of it")
+    manufacturer: Text = Field(default="", description="text: who makes it")
+    model: Text = Field(default="", description="text: the maker's name of it")
     geometry_mm: GeometryForm = Field(description="a mapping of the seven lengths a1, a2, b, c1, c2, c3, c4 [mm]")
     joints: JointsForm = Field(
         description="a mapping of names, sign, offset_deg, lower_deg, upper_deg and speed_deg_s, six entries each"
@@ -86,17 +133,17 @@ class RobotFile(RobotForm):
     """A robot file, YAML."""
 
     format: Literal["zerorev.robot/1"] = Field(description="zerorev.robot/1")
-    sources: dict[str, str] = Field(default={}, description="a mapping of text to text: where the numbers come from")
-    second_sources: list[str] = Field(default=[], description="a list of text: what a second source says")
-    caveats: list[str] = Field(default=[], description="a list of text: what to know before trusting the numbers")
+    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
+    second_sources: Many[Text] = Field(default=[], description="a list of text: what a second source says")
+    caveats: Many[Text] = Field(default=[], description="a list of text: what to know before trusting the numbers")
 
 
 class ToolForm(Form):
     """The numbers of a tool: flange to TCP, Z_tcp against the plunge."""
 
     name: Name = Field(default="tool", description="text: how jobs call the tool")
-    tcp_mm: Three = Field(description="three numbers [mm]: the TCP in the flange frame")
-    rpy_deg: Three = Field(
+    tcp_mm: PlaceMm = Field(description="three numbers [mm]: the TCP in the flange frame")
+    rpy_deg: AnglesDeg = Field(
         description="three numbers [deg]: roll, pitch, yaw of the TCP; R = Rz(yaw) Ry(pitch) Rx(roll)"
     )
 
@@ -106,7 +153,7 @@ class ToolFile(ToolForm):
 
     format: Literal["zerorev.tool/1"] = Field(description="zerorev.tool/1")
     name: Name = Field(description="text: how jobs call the tool")
-    sources: dict[str, str] = Field(default={}, description="a mapping of text to text: where the numbers come from")
+    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
 
 
 # --- job --------------------------------------------------------------------------------------------------------------
@@ -115,8 +162,8 @@ class ToolFile(ToolForm):
 class FrameForm(Form):
     """A frame in the base frame."""
 
-    xyz_mm: Three = Field(default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, base frame")
-    rpy_deg: Three = Field(
+    xyz_mm: PlaceMm = Field(default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, base frame")
+    rpy_deg: AnglesDeg = Field(
         default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
     )
 
@@ -158,7 +205,7 @@ class WeightsForm(Form):
 class SettingsForm(Form):
     """How to plan and how to run the motion."""
 
-    min_rate_deg_per_mm: NotNegative = Field(
+    min_rate_deg_per_mm: Rate = Field(
         default=0.01,
         description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
     )
@@ -166,13 +213,13 @@ class SettingsForm(Form):
         default="pointwise",
         description="pointwise (the least motion at every point) or mean (on the average of each leg)",
     )
-    psi_bound_deg: Positive | None = Field(
+    psi_bound_deg: SpinBound | None = Field(
         default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
     )
     legs: Literal["straight", "free"] = Field(
         default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
     )
-    max_twist_deg_per_mm: Positive = Field(
+    max_twist_deg_per_mm: Twist = Field(
         default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
     )
     objective: Annotated[
@@ -192,15 +239,13 @@ class SettingsForm(Form):
     reversal_weights: SixPositive = Field(
         default=[1.0] * 6, description="six numbers above 0: what a reversal of each joint costs"
     )
-    near_joints_deg: Six | None = Field(
+    near_joints_deg: SixDeg | None = Field(
         default=None,
         description="six controller angles [deg] to which free turns are chosen nearest; or null: the turns farthest "
         "from the limits",
     )
-    blend_mm: NotNegative = Field(
-        default=1.0, description="a number, 0 or more [mm]: radius of the blend at the corner"
-    )
-    blend_shortfall_mm: NotNegative | None = Field(
+    blend_mm: Stretch = Field(default=1.0, description="a number, 0 or more [mm]: radius of the blend at the corner")
+    blend_shortfall_mm: Stretch | None = Field(
         default=None,
         description="a number from 0 to blend_mm [mm]: depth lost to the blend as measured; or null: half of blend_mm",
     )
@@ -208,7 +253,7 @@ class SettingsForm(Form):
         default=False,
         description="true or false: whether the corner lies deeper by the shortfall, so that the depth is met",
     )
-    lead_in_mm: NotNegative = Field(
+    lead_in_mm: Stretch = Field(
         default=5.0, description="a number, 0 or more [mm]: length run along the plunge leg before the drill enters"
     )
     keep_lead_in: bool = Field(
@@ -232,17 +277,17 @@ class HoleForm(Form):
     """One hole of a job, in the part frame."""
 
     id: Id = Field(description="text or a whole number: how the hole is called; one line, 1 to 100 characters")
-    target_mm: Three = Field(description="three numbers [mm]: bottom of the stroke, part frame")
+    target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, part frame")
     direction: Three = Field(description="three numbers, not all 0: into the material, part frame, of any length")
-    depth_mm: Positive | None = Field(
+    depth_mm: Depth | None = Field(
         default=None, description="a number above 0 [mm]: the stroke; zerorev depth alone does without it"
     )
-    psi_deg: Breakpoints | None = Field(
+    psi_deg: SpinsDeg | None = Field(
         default=None,
         description="three numbers [deg]: spins at start, target and end of a motion to be evaluated, not searched; "
         "or more, with standoff_mm beside them",
     )
-    standoff_mm: Breakpoints | None = Field(
+    standoff_mm: StandoffsMm | None = Field(
         default=None,
         description="as many numbers [mm] as psi_deg: stand-offs in order of motion, strictly falling from depth_mm to "
         "the target, then strictly rising to depth_mm; left out, they are depth_mm, 0, depth_mm",
@@ -277,7 +322,8 @@ class JobFile(SettingsForm):
         "the direction of Y_tcp at psi = 0",
     )
     holes: Annotated[
-        Annotated[list[HoleForm], Field(min_length=1), Tag("<list>")] | Annotated[Name, Tag("<text>")],
+        Annotated[list[HoleForm], Field(min_length=1, max_length=MOST_HOLES, fail_fast=True), Tag("<list>")]
+        | Annotated[Name, Tag("<text>")],
         Discriminator(kind),
     ] = Field(
         description="a list of one hole or more, or the path of a CSV file with the columns "

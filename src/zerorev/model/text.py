@@ -1,38 +1,47 @@
-"""Between the disk and plain data: YAML, JSON and CSV in, JSON out.
+"""Between the disk and plain data: text, JSON and CSV in, JSON out; YAML is in `zerorev.model.yaml_text`.
 
-Whatever the bytes are, reading them ends in plain data or in an `InputError` that names the file and the line.
+Whatever the bytes are, reading them ends in plain data or in an `InputError` that names the file and the line. Sizes
+and counts are limited, so that it ends soon, and in a memory that is known beforehand (docs/security.md has figures).
 """
 
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
-import re
+import os
 import reprlib
-from collections.abc import Callable, Iterator
+import stat
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn
 
-import yaml
-
 from zerorev.errors import InputError
+from zerorev.visible import as_json, table_cell
 
 __all__ = [
+    "MAX_BYTES",
+    "MAX_DEPTH",
+    "MAX_KEYS",
+    "MAX_ROWS",
     "Document",
     "csv_rows",
+    "csv_text",
     "json_document",
     "json_pieces",
     "json_text",
     "read_bytes",
     "read_text",
     "row_of",
-    "yaml_document",
-    "yaml_text",
 ]
 
-MAX_BYTES = 64 * 2**20
+MAX_BYTES = 64 * 2**20  # of one file
+MAX_VALUES = 4_000_000  # of one JSON file: those of some 20,000 holes of a plan
+MAX_DEPTH = 40  # of lists and mappings within each other
+MAX_KEYS = 1_000  # of one mapping
+MAX_ROWS = 200_000  # of one table
 LINE_WIDTH = 160
 
 FieldPath = tuple[str | int, ...]
@@ -87,128 +96,44 @@ def read_text(path: Path, accepted: str) -> str:
         ) from None
 
 
-def read_bytes(path: Path, accepted: str) -> bytes:
+def read_bytes(path: Path, accepted: str, most: int = MAX_BYTES) -> bytes:
     """The content of a file.
 
     Args:
         path: which.
         accepted: what kind of file belongs here, for the message.
+        most: bytes that it may have.
 
     Raises:
         InputError: no such file, a folder, too large, not readable.
     """
     try:
-        if path.is_dir():
-            raise InputError("is a folder", where=str(path), accepted=accepted)
-        if path.exists() and not path.is_file():
-            raise InputError("is not a regular file", where=str(path), accepted=accepted)
-        if path.stat().st_size > MAX_BYTES:
-            raise InputError(f"is larger than {MAX_BYTES // 2**20} MiB", where=str(path), accepted=accepted)
-        return path.read_bytes()
+        with open(path, "rb", opener=_not_waiting) as stream:
+            content = stream.read(most + 1)
+    except _NotAFileError as error:
+        raise InputError(str(error), where=str(path), accepted=accepted) from None
     except FileNotFoundError:
         raise InputError("no such file", where=str(path), accepted=accepted) from None
     except (OSError, ValueError) as error:  # ValueError: a null byte in the path
         why = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot be read: {why}", where=repr(str(path)), accepted=accepted) from None
+    if len(content) > most:
+        raise InputError(f"is larger than {most // 2**20} MiB", where=str(path), accepted=accepted)
+    return content
 
 
-# --- YAML -------------------------------------------------------------------------------------------------------------
+class _NotAFileError(Exception):
+    """What is there instead."""
 
 
-class _Loader(yaml.SafeLoader):
-    """Reads scalars as the core schema of YAML 1.2 does: 1e-3 is a number, `no` and a date are text."""
-
-    yaml_implicit_resolvers = {}  # noqa: RUF012  PyYAML's own way
-
-    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        """Refuse aliases: a few of them can blow a small file up to any size."""
-        if self.check_event(yaml.AliasEvent):
-            mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
-            raise yaml.MarkedYAMLError(problem="aliases (*name) are not read", problem_mark=mark)
-        return super().compose_node(parent, index)
-
-
-_TAG = "tag:yaml.org,2002:"
-for _name, _pattern, _first in (
-    ("null", r"(~|null|Null|NULL|)$", ["~", "n", "N", ""]),
-    ("bool", r"(true|True|TRUE|false|False|FALSE)$", list("tTfF")),
-    ("int", r"[-+]?[0-9]+$", list("-+0123456789")),
-    ("float", r"([-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN))$",
-     list("-+.0123456789")),
-):  # fmt: skip
-    _Loader.add_implicit_resolver(_TAG + _name, re.compile(_pattern), _first)
-
-_SCALARS: dict[str, Callable[[str], Any]] = {
-    "null": lambda text: None,
-    "bool": lambda text: text.lower() == "true",
-    "int": int,
-    "float": lambda text: float(text.replace(".inf", "inf").replace(".nan", "nan")),
-    "str": str,
-}
-
-
-def yaml_document(text: str, file: str) -> Document:
-    """Plain data of a YAML text.
-
-    Raises:
-        InputError: a syntax error, a key used twice, an alias, an unknown tag, too deep a nesting.
-    """
-    lines: dict[FieldPath, int] = {}
-    try:
-        node = _Loader(text).get_single_node()
-        return Document(file, None if node is None else _plain(node, (), lines), lines)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        line = f", line {mark.line + 1}" if mark else ""
-        what = ", ".join(part for part in (error.context, error.problem) if part)
-        raise InputError(what, where=file + line, accepted="YAML") from None
-    except yaml.reader.ReaderError as error:
-        line_number = text.count("\n", 0, error.position) + 1
-        raise InputError("holds a control character", where=f"{file}, line {line_number}", accepted="YAML") from None
-    except RecursionError:
-        raise InputError("is nested too deep", where=file, accepted="YAML") from None
-
-
-def _plain(node: yaml.Node, path: FieldPath, lines: dict[FieldPath, int]) -> Any:
-    lines[path] = node.start_mark.line + 1
-    if isinstance(node, yaml.MappingNode):
-        mapping: dict[str, Any] = {}
-        for key, value in node.value:
-            if not isinstance(key, yaml.ScalarNode):
-                _refuse("a key that is not text", key)
-            if key.value in mapping:
-                _refuse(f"the key '{key.value}' is used twice", key)
-            mapping[key.value] = _plain(value, (*path, key.value), lines)
-        return mapping
-    if isinstance(node, yaml.SequenceNode):
-        return [_plain(value, (*path, i), lines) for i, value in enumerate(node.value)]
-    try:
-        return _SCALARS[node.tag.removeprefix(_TAG)](node.value)
-    except KeyError:
-        _refuse(f"the tag {node.tag} is not read", node)
-    except ValueError:  # e.g. !!int x, or thousands of digits
-        _refuse("not a number that can be read", node)
-
-
-def _refuse(problem: str, node: yaml.Node) -> NoReturn:
-    raise yaml.MarkedYAMLError(problem=problem, problem_mark=node.start_mark)
-
-
-class _Dumper(yaml.SafeDumper):
-    """Puts into quotes whatever `_Loader` would not read as text again."""
-
-    yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
-
-    def ignore_aliases(self, data: Any) -> bool:
-        """Write everything out."""
-        return True
-
-
-def yaml_text(data: Any) -> str:
-    """Plain data as YAML that `yaml_document` reads as the same; short lists and mappings stand on one line."""
-    return str(
-        yaml.dump(data, Dumper=_Dumper, default_flow_style=None, sort_keys=False, allow_unicode=True, width=LINE_WIDTH)
-    )
+def _not_waiting(path: str, flags: int) -> int:
+    """Open a regular file, and nothing else: a pipe would be waited for, a device may never end."""
+    number = os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+    kind = os.fstat(number).st_mode
+    if stat.S_ISREG(kind):
+        return number
+    os.close(number)
+    raise _NotAFileError("is a folder" if stat.S_ISDIR(kind) else "is not a regular file")
 
 
 # --- JSON -------------------------------------------------------------------------------------------------------------
@@ -218,14 +143,18 @@ def json_document(text: str, file: str) -> Document:
     """Plain data of a JSON text.
 
     Raises:
-        InputError: a syntax error, NaN or infinity, a key used twice, too deep a nesting.
+        InputError: a syntax error, NaN or infinity, a key used twice, too deep a nesting, too many values.
     """
+    if sum(map(text.count, ",[{")) > MAX_VALUES:  # of those within texts some too many
+        raise InputError(f"more than {MAX_VALUES:,} values", where=file, accepted=f"{MAX_VALUES:,} or less")
 
     def no_twins(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         mapping = dict(pairs)
+        if len(mapping) > MAX_KEYS:
+            raise InputError(f"a mapping of {len(mapping):,} keys", where=file, accepted=f"{MAX_KEYS:,} or less")
         if len(mapping) < len(pairs):
-            keys = [key for key, _ in pairs]
-            twin = next(key for key in keys if keys.count(key) > 1)
+            seen: set[str] = set()
+            twin = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
             raise InputError(f"the key {twin!r} is used twice", where=file, accepted="each key once")
         return mapping
 
@@ -249,7 +178,7 @@ def json_document(text: str, file: str) -> Document:
 
 def json_text(data: Any) -> str:
     """Plain data as JSON that people can read: whatever fits on a line stands on one."""
-    return _laid_out(data, 0, 0) + "\n"
+    return as_json(_laid_out(data, 0, 0)) + "\n"
 
 
 def json_pieces(data: dict[str, Any]) -> Iterator[str]:
@@ -261,11 +190,11 @@ def json_pieces(data: dict[str, Any]) -> Iterator[str]:
             yield before + name
             between = "["
             for entry in value:
-                yield f"{between}\n    {_laid_out(entry, 4, 1)}"
+                yield f"{between}\n    {as_json(_laid_out(entry, 4, 1))}"
                 between = ","
             yield "\n  ]"
         else:
-            yield before + name + _laid_out(value, 2, len(name) - 2)
+            yield before + name + as_json(_laid_out(value, 2, len(name) - 2))
         before = ","
     yield "\n}\n"
 
@@ -304,11 +233,12 @@ def csv_rows(
         The row's line, and its cells by the names of their columns.
 
     Raises:
-        InputError: a missing, unknown or repeated column, a cell too many or too few, a cell that is not a number.
+        InputError: a missing, unknown or repeated column, a cell too many or too few, a cell that is not a number,
+            too many rows.
     """
     columns = (label, *numbers)
     accepted = f"the columns {','.join(columns)}, separated by commas"
-    reader = csv.reader(text.splitlines(), strict=True)
+    reader, rows = csv.reader(text.splitlines(), strict=True), 0
     try:
         header = [cell.strip() for cell in next(reader, [])]
         where = f"{file}, line 1"
@@ -322,9 +252,20 @@ def csv_rows(
             where = f"{file}, line {reader.line_num}"
             if not any(cell.strip() for cell in cells):
                 continue
+            if (rows := rows + 1) > MAX_ROWS:
+                raise InputError(f"more than {MAX_ROWS:,} rows", where=where, accepted=f"{MAX_ROWS:,} or less")
             yield reader.line_num, row_of(header, cells, label, where)
     except csv.Error as error:
         raise InputError(str(error), where=f"{file}, line {reader.line_num}", accepted="CSV") from None
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Rows as a CSV file with plain line feeds: None is an empty cell, and no text is a formula to a spreadsheet."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    for row in rows:
+        writer.writerow(table_cell(cell) if isinstance(cell, str) else cell for cell in row)
+    return stream.getvalue()
 
 
 def row_of(header: list[str], cells: list[str], label: str, where: str) -> dict[str, Any]:

@@ -20,6 +20,7 @@ __all__ = ["checked", "inside", "problems"]
 F = TypeVar("F", bound=Form)
 
 SHOWN = 3  # problems listed in one message
+TAGS = ("<text>", "<list>", "<mapping>", "<cone>", "<sphere>")  # of the members of unions, as pydantic names them
 
 WORDS = {
     "missing": "is missing",
@@ -33,10 +34,11 @@ WORDS = {
     "model_type": "{value} is not a mapping of keys to values",
     "literal_error": "{value} is not among the choices",
     "greater_than": "{value} is too small",
-    "greater_than_equal": "{value} is too small",
-    "less_than_equal": "{value} is too large",
+    "greater_than_equal": "{value} is too small: {ge:g} is the least",
+    "less_than_equal": "{value} is too large: {le:g} is the most",
     "too_short": "has {actual_length} entries",
-    "too_long": "has too many entries",
+    "too_long": "has too many entries: {max_length} is the most",
+    "string_too_long": "{value} is too long: {max_length} characters is the most",
 }
 
 
@@ -62,13 +64,15 @@ def checked(form: type[F], document: Document) -> F:
     with inside(document.file):
         if len(wrong) == 1:
             raise wrong[0]
-        more = [f"... and {len(wrong) - SHOWN} more"] if len(wrong) > SHOWN else []
+        more = ["... and more"] if len(wrong) > SHOWN else []
         listed = "".join(f"\n  - {problem}" for problem in [*wrong[:SHOWN], *more])
-        raise InputError(f"{len(wrong)} problems{listed}")
+        raise InputError(f"several problems{listed}")
 
 
 def problems(form: type[Form], document: Document) -> list[tuple[FieldPath, InputError]]:
     """What the form does not accept of a mapping, field by field, each with the path of its field.
+
+    Of a list of many entries no more is examined than up to the first that is not accepted.
 
     Args:
         form: what the mapping is to be.
@@ -94,7 +98,10 @@ def inside(where: str) -> Iterator[None]:
 
 
 def _path(detail: Any) -> FieldPath:
-    return tuple(part for part in detail["loc"] if not str(part).startswith("<"))
+    """Where a problem is, without the tags of unions; an unknown key stays, though it looks like one."""
+    loc: FieldPath = detail["loc"]
+    unknown = loc[-1:] if detail["type"] == "extra_forbidden" else ()
+    return (*(part for part in loc[: len(loc) - len(unknown)] if part not in TAGS), *unknown)
 
 
 def _problem(form: type[Form], document: Document, detail: Any) -> InputError:

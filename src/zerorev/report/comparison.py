@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
 from statistics import median
 from typing import Any
@@ -15,6 +13,7 @@ from rich.text import Text
 from zerorev.compare import Comparison, Rescored, Summary
 from zerorev.model._units import deg, mm, plain
 from zerorev.model.conversion import robot_data, tool_data
+from zerorev.model.text import csv_text
 
 __all__ = ["comparison_csv", "comparison_data", "comparison_lines", "comparison_table", "duration"]
 
@@ -90,14 +89,11 @@ def _run_data(run: Rescored) -> dict[str, Any]:
 
 def comparison_csv(comparison: Comparison) -> str:
     """One row a run, as text; what does not apply is left empty."""
-    stream = io.StringIO()
-    rows = [
+    runs = [
         {"hole": run.hole, "method": run.method} | _in_columns(dict(plain(_run_data(run)))) for run in comparison.runs
     ]
-    writer = csv.DictWriter(stream, list(rows[0]) if rows else ["hole", "method"], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
+    names = list(runs[0]) if runs else ["hole", "method"]
+    return csv_text([names, *([run[name] for name in names] for run in runs)])
 
 
 def _in_columns(data: dict[str, Any]) -> dict[str, Any]:

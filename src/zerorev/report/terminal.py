@@ -13,7 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.segment import Segment
 from rich.text import Text
+
+from zerorev.visible import visible
 
 __all__ = [
     "busy",
@@ -37,7 +40,19 @@ SECONDS_BETWEEN_LINES = 10.0
 
 
 class _Console(Console):
-    """A console that leaves it to `main` to say with which code a closed pipe ends."""
+    """A console on which all text is text: no markup, no names of pictures, nothing that a terminal would obey.
+
+    It leaves it to `main` to say with which code a closed pipe ends.
+    """
+
+    def __init__(self, width: int | None, *, stderr: bool = False) -> None:
+        super().__init__(stderr=stderr, highlight=False, markup=False, emoji=False, width=width)
+
+    def _render_buffer(self, buffer: Iterable[Segment]) -> str:
+        """What is sent to the terminal of what is laid out; the styles are put around it here."""
+        return super()._render_buffer(
+            segment if segment.control else Segment(visible(segment.text), segment.style) for segment in buffer
+        )
 
     def on_broken_pipe(self) -> None:
         """Tell the caller."""
@@ -46,12 +61,12 @@ class _Console(Console):
 
 def out() -> Console:
     """Standard output, as it is now."""
-    return _Console(highlight=False, width=None if sys.stdout.isatty() else PIPED_WIDTH)
+    return _Console(None if sys.stdout.isatty() else PIPED_WIDTH)
 
 
 def err() -> Console:
     """Standard error, as it is now."""
-    return _Console(stderr=True, highlight=False, width=None if sys.stderr.isatty() else PIPED_WIDTH)
+    return _Console(None if sys.stderr.isatty() else PIPED_WIDTH, stderr=True)
 
 
 def replace_what_cannot_be_shown() -> None:
@@ -169,11 +184,19 @@ def busy(what: str) -> Iterator[None]:
         yield
 
 
+class _Visible(logging.Formatter):
+    """Says what is logged as text."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """On one line or several."""
+        return visible(super().format(record))
+
+
 @contextlib.contextmanager
 def notices() -> Iterator[None]:
     """Show what the library logs, e.g. that its kernels compile, as notes on standard error."""
     handler = logging.StreamHandler(sys.stderr)
-    handler.setFormatter(logging.Formatter("note: %(message)s"))
+    handler.setFormatter(_Visible("note: %(message)s"))
     logger = logging.getLogger("zerorev")
     logger.addHandler(handler)
     try:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +10,7 @@ import numpy as np
 from zerorev.maps.answers import Cells, Difference, best_cells, cells_of, mirror_in_y
 from zerorev.maps.cells import STATUS
 from zerorev.model._arrays import Array
+from zerorev.model.text import csv_text
 from zerorev.report.map_run import WORDS
 
 if TYPE_CHECKING:
@@ -83,17 +82,15 @@ def difference_lines(apart: Difference, names: tuple[str, str]) -> list[str]:
 
 def difference_csv(apart: Difference, names: tuple[str, str]) -> str:
     """Two maps cell by cell, every digit; an empty field where there is no answer."""
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
     variable = apart.quantity.variable
     places = [*(f"{axis}_mm" for axis in "xyz"), *(f"direction_{axis}" for axis in "xyz")]
-    writer.writerow([*places, *(f"{variable} of {name}" for name in names), f"change of {variable}"])
+    rows: list[list[object]] = [[*places, *(f"{variable} of {name}" for name in names), f"change of {variable}"]]
     change = apart.change
     for row, column in np.ndindex(*change.shape):
         numbers = (apart.first[row, column], apart.second[row, column], change[row, column])
-        shown = ["" if np.isnan(number) else repr(float(number)) for number in numbers]
-        writer.writerow([*apart.target[row].tolist(), *apart.direction[column].tolist(), *shown])
-    return stream.getvalue()
+        shown = [None if np.isnan(number) else float(number) for number in numbers]
+        rows.append([*apart.target[row].tolist(), *apart.direction[column].tolist(), *shown])
+    return csv_text(rows)
 
 
 def names_of(first: Path, second: Path) -> tuple[str, str]:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import dataclass
 from typing import Any
+
+from zerorev.model.text import csv_text
 
 __all__ = ["Cell", "Column", "Picture", "Result", "Section", "Table"]
 
@@ -61,11 +61,7 @@ class Table:
 
     def csv(self) -> str:
         """The table as a CSV file, units in its heading, every digit."""
-        stream = io.StringIO()
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(column.heading for column in self.columns)
-        writer.writerows(["" if cell is None else cell for cell in row] for row in self.rows)
-        return stream.getvalue()
+        return csv_text([[column.heading for column in self.columns], *self.rows])
 
     @property
     def shown(self) -> list[list[str]]:
