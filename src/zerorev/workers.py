@@ -14,6 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from itertools import islice
 from multiprocessing import connection, get_context, parent_process
+from multiprocessing.reduction import ForkingPickler
 from types import TracebackType
 from typing import Any, Generic, TypeVar
 
@@ -68,7 +69,8 @@ class Workers(Generic[Thing, Result]):
     def _submit(self, running: deque[Future[Result]], things: Iterator[Thing], count: int) -> None:
         for thing in islice(things, count):
             if self._pool is None:
-                self._pool = ProcessPoolExecutor(self._count, get_context("spawn"), _begin, (self._task,))
+                task = bytes(ForkingPickler.dumps(self._task))
+                self._pool = ProcessPoolExecutor(self._count, get_context("spawn"), _begin, (task,))
             with interrupts_held_back():  # workers are started here, and know nothing of Ctrl-C from their first moment
                 running.append(self._pool.submit(_done, thing))
 
@@ -83,12 +85,15 @@ class Workers(Generic[Thing, Result]):
 _task: Callable[[Any], Any]  # of a worker
 
 
-def _begin(task: Callable[[Any], Any]) -> None:
-    """Make a worker ready; it ends with its parent, also where that is killed."""
+def _begin(task: bytes) -> None:
+    """Make a worker ready; it ends with its parent, also where that is killed, from its first moment on.
+
+    The task comes pickled, because what it is made of takes a second to import.
+    """
     global _task
-    _task = task
-    logging.getLogger("zerorev").addHandler(logging.NullHandler())
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    logging.getLogger("zerorev").addHandler(logging.NullHandler())
+    _task = ForkingPickler.loads(task)
 
 
 def _end_with_parent() -> None:

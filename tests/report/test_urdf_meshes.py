@@ -161,7 +161,7 @@ def test_what_is_no_description(robot, tmp_path, content, message):
 
 
 def test_a_file_that_is_not_there(robot, tmp_path):
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="no such file"):
         read_meshes(tmp_path / "no.urdf", robot)
 
 

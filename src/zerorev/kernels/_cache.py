@@ -7,6 +7,7 @@ for it, kernels are compiled without.
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 import zlib
@@ -195,7 +196,9 @@ class Turn:
 
 
 @cache
-def stamp() -> tuple[tuple[str, float, int], ...]:
-    """Name, time of change and size of all files of kernels."""
-    files = sorted(Path(__file__).parent.glob("*.py"))
-    return tuple((file.name, file.stat().st_mtime, file.stat().st_size) for file in files)
+def stamp() -> str:
+    """A digest of all files of kernels."""
+    found = hashlib.sha256()
+    for file in sorted(Path(__file__).parent.glob("*.py")):
+        found.update(file.name.encode() + b"\0" + file.read_bytes())
+    return found.hexdigest()

@@ -18,11 +18,13 @@ import numpy as np
 from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
+from zerorev.maps.replan import question_of
 from zerorev.maps.sound import MARK, check_grid, check_store
 from zerorev.model._units import mm, plain
 from zerorev.model.conversion import robot_data, settings_data, tool_data
 from zerorev.model.map_task import NEED_DEPTH, SWARMS, MapTask
 from zerorev.model.output import as_output_error, check_folder, write_whole_folder
+from zerorev.model.validation import inside
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -167,6 +169,8 @@ def read_workspace_map(path: str | Path, *, load: bool = True) -> Dataset:
         InputError: there is no such folder, it holds no workspace map, or it is damaged.
     """
     found = read_head(path)
+    with inside(str(path)):
+        question_of(found)
     if load:
         try:
             found = found.load()

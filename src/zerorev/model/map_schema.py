@@ -121,7 +121,7 @@ class MapFile(Form):
     max_twist_deg_per_mm: Twist = Field(
         default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
     )
-    seed: Annotated[int, Field(ge=0)] | None = Field(
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = Field(
         default=None,
         description="a whole number, 0 or more: of the swarm; for thesis_bisection and thesis_stepping alone",
     )

@@ -13,16 +13,16 @@ from zerorev.model.schema import (
     Form,
     FrameForm,
     Many,
+    Measured,
     Name,
     NotNegative,
     PlaceMm,
     RobotForm,
     SettingsForm,
-    Six,
+    SixDeg,
     SpinsDeg,
     StandoffsMm,
     Text,
-    Three,
     ToolForm,
 )
 
@@ -41,8 +41,10 @@ __all__ = [
     "VerifiedForm",
 ]
 
-SixMeasured = Annotated[list[float | None], Field(min_length=6, max_length=6)]
-SixCounts = Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=6, max_length=6)]
+SixMeasured = Annotated[list[Measured | None], Field(min_length=6, max_length=6)]
+Unit = Annotated[list[Annotated[float, Field(ge=-1.001, le=1.001)]], Field(min_length=3, max_length=3)]
+Count = Annotated[int, Field(ge=0, le=10**9)]
+SixCounts = Annotated[list[Count], Field(min_length=6, max_length=6)]
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
@@ -70,24 +72,24 @@ class FindingForm(Form):
 class CriteriaForm(Form):
     """What the criteria measure of a motion beside its reversals; null where it is undefined."""
 
-    travel_deg: float | None = Field(description="a number [deg]: sum over the joints of the angle moved")
-    margin_deg_per_mm: float | None = Field(
+    travel_deg: Measured | None = Field(description="a number [deg]: sum over the joints of the angle moved")
+    margin_deg_per_mm: Measured | None = Field(
         description="a number [deg/mm]: slowest motion of a joint that does not reverse, by min_rate_rule"
     )
-    plunge_rotation_deg: float | None = Field(description="a number [deg]: spin of the tool during the plunge")
-    tool_speed_change_rpm: float | None = Field(
+    plunge_rotation_deg: Measured | None = Field(description="a number [deg]: spin of the tool during the plunge")
+    tool_speed_change_rpm: Measured | None = Field(
         description="a number [rev/min]: greatest change of the drill's speed by the spin during the plunge"
     )
-    limit_distance: float | None = Field(
+    limit_distance: Measured | None = Field(
         description="a number: least distance of a joint to a limit, 0 at it, 1 in the middle of its range"
     )
-    compliance_axial_um_per_n: float | None = Field(
+    compliance_axial_um_per_n: Measured | None = Field(
         description="a number [um/N]: greatest give of the tip along the drill axis; null: no joint stiffness is given"
     )
-    compliance_lateral_um_per_n: float | None = Field(
+    compliance_lateral_um_per_n: Measured | None = Field(
         description="a number [um/N]: greatest give of the tip across the drill axis; null: no joint stiffness is given"
     )
-    manipulability: float | None = Field(
+    manipulability: Measured | None = Field(
         description="a number: least manipulability, 0 where the arm is singular, always below 1"
     )
 
@@ -97,7 +99,7 @@ class EventForm(Form):
 
     joint: Annotated[int, Field(ge=1, le=6)] = Field(description="a whole number from 1 to 6")
     leg: Literal["plunge", "target", "retract"] = Field(description="plunge, target (at the corner) or retract")
-    standoff_mm: float = Field(description="a number [mm]: where")
+    standoff_mm: Measured = Field(description="a number [mm]: where")
 
 
 class GivenForm(Form):
@@ -111,10 +113,10 @@ class GivenForm(Form):
 class JointsDegForm(Form):
     """The joints along a motion: controller angles with turns."""
 
-    start: Six = Field(description="six numbers [deg] at the start")
-    target: Six = Field(description="six numbers [deg] at the corner")
-    end: Six = Field(description="six numbers [deg] at the end")
-    breakpoints: Annotated[list[Six], Field(min_length=3, max_length=10_000, fail_fast=True)] = Field(
+    start: SixDeg = Field(description="six numbers [deg] at the start")
+    target: SixDeg = Field(description="six numbers [deg] at the corner")
+    end: SixDeg = Field(description="six numbers [deg] at the end")
+    breakpoints: Annotated[list[SixDeg], Field(min_length=3, max_length=10_000, fail_fast=True)] = Field(
         description="six numbers [deg] for each entry of standoff_mm"
     )
 
@@ -138,7 +140,7 @@ class OptimalityForm(Form):
 class BaselineForm(Form):
     """The same hole drilled with constant spin, psi = psi_start, on the plan's branch."""
 
-    reversals: int = Field(ge=0, description="a whole number: reversals of all joints")
+    reversals: Count = Field(description="a whole number: reversals of all joints")
     reversals_per_joint: SixCounts = Field(description="six whole numbers")
     travel_deg: NotNegative = Field(description="a number [deg]: sum over the joints of the angle moved")
 
@@ -147,15 +149,17 @@ class VerifiedForm(Form):
     """What the independent check looked at, and what it found."""
 
     passed: bool = Field(description="true or false: whether the plan's claims hold")
-    samples: int = Field(ge=0, description="a whole number: points looked at on the two legs")
-    blend_samples: int = Field(ge=0, description="a whole number: points looked at on the blended corner")
+    samples: Count = Field(description="a whole number: points looked at on the two legs")
+    blend_samples: Count = Field(description="a whole number: points looked at on the blended corner")
     reversals_per_joint: SixCounts = Field(description="six whole numbers, as counted by the check")
-    max_position_error_mm: float | None = Field(description="a number [mm]: the tip off its path; null: undefined")
-    max_rotation_error_deg: float | None = Field(description="a number [deg]: the tool off its pose; null: undefined")
-    max_joint_step_deg: float | None = Field(
+    max_position_error_mm: Measured | None = Field(description="a number [mm]: the tip off its path; null: undefined")
+    max_rotation_error_deg: Measured | None = Field(
+        description="a number [deg]: the tool off its pose; null: undefined"
+    )
+    max_joint_step_deg: Measured | None = Field(
         description="a number [deg]: greatest step between neighbouring samples; null: undefined"
     )
-    min_limit_distance_deg: float | None = Field(
+    min_limit_distance_deg: Measured | None = Field(
         description="a number [deg]: least distance to a joint limit; null: undefined"
     )
     failures: Many[Text] = Field(description="a list of text: one sentence a failed check")
@@ -170,7 +174,7 @@ class CertificateForm(Form):
     verdict: Literal["certified", "refuted", "undecided"] = Field(
         description="certified (proven), refuted (proven to be wrong) or undecided"
     )
-    pieces: int = Field(ge=0, description="a whole number: pieces into which the motion was cut")
+    pieces: Count = Field(description="a whole number: pieces into which the motion was cut")
     min_rate_deg_per_mm: SixMeasured = Field(description="six numbers [deg/mm]: on the legs no joint moves slower")
     blend_min_rate_deg_per_mm: SixMeasured = Field(
         description="six numbers [deg/mm]: in the blends no joint moves slower; null without one"
@@ -191,7 +195,7 @@ class PlanHole(Form):
 
     id: Name = Field(description="text: the hole's id")
     target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, base frame")
-    direction: Three = Field(description="three numbers: unit vector into the material, base frame")
+    direction: Unit = Field(description="three numbers: unit vector into the material, base frame")
     depth_mm: Depth = Field(description="a number above 0 [mm]: the stroke")
     deepest_mm: NotNegative | None = Field(
         default=None,
@@ -202,7 +206,7 @@ class PlanHole(Form):
         description="a number [mm]: no stroke without a reversal is as deep, of straight or free legs as the settings"
         " say; or null: not proven",
     )
-    psi_zero: Three = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
+    psi_zero: Unit = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
     given: GivenForm | None = Field(
         default=None,
         description="a mapping of standoff_mm, psi_deg and branch as the job fixed them; or null: it fixed none",
@@ -214,7 +218,7 @@ class PlanHole(Form):
     standoff_mm: StandoffsMm | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
     psi_deg: SpinsDeg | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
     joints_deg: JointsDegForm | None = Field(description="a mapping of start, target, end and breakpoints")
-    reversals: Annotated[int, Field(ge=0)] | None = Field(description="a whole number: reversals of all joints")
+    reversals: Count | None = Field(description="a whole number: reversals of all joints")
     reversals_per_joint: SixCounts | None = Field(description="six whole numbers")
     events: Many[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
     travel_deg: NotNegative | None = Field(description="a number [deg]: sum over the joints of the angle moved")

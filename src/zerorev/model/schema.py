@@ -70,7 +70,8 @@ SpinBound = Annotated[float, Field(gt=0, le=3_600)]  # [deg]
 Rate = Annotated[float, Field(ge=0, le=1e4)]  # [deg/mm]
 Twist = Annotated[float, Field(gt=0, le=1e4)]  # [deg/mm]
 Positive = Annotated[float, Field(gt=0, le=1e12)]
-NotNegative = Annotated[float, Field(ge=0)]
+NotNegative = Annotated[float, Field(ge=0, le=1e15)]
+Measured = Annotated[float, Field(ge=-1e15, le=1e15)]
 
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]
 PlaceMm = Annotated[list[Length], Field(min_length=3, max_length=3)]
@@ -81,6 +82,7 @@ SixPositive = Annotated[list[Positive], Field(min_length=6, max_length=6)]
 Breakpoints = Annotated[list[float], Field(min_length=3, max_length=10_000, fail_fast=True)]
 StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=10_000, fail_fast=True)]
 SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=10_000, fail_fast=True)]
+SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 Branch = Annotated[int, Field(ge=0, le=7)]
 
 
@@ -110,7 +112,9 @@ class JointsForm(Form):
     """The joints as the controller shows them; model angle = sign * controller angle - offset."""
 
     names: Annotated[list[Name], Field(min_length=6, max_length=6)] = Field(description="six names, e.g. A1 to A6")
-    sign: Annotated[list[int], Field(min_length=6, max_length=6)] = Field(description="six of 1 or -1")
+    sign: Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)] = Field(
+        description="six of 1 or -1"
+    )
     offset_deg: SixDeg = Field(description="six numbers [deg]")
     lower_deg: SixDeg = Field(description="six numbers [deg]: the lower joint limits")
     upper_deg: SixDeg = Field(description="six numbers [deg]: the upper joint limits")

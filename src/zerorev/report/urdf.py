@@ -6,6 +6,7 @@ looked for inside the folder of the file itself.
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -16,10 +17,14 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, rotation_rpy, transform
+from zerorev.model.text import read_bytes
 
 __all__ = ["Description", "Joint", "Visual", "read_urdf"]
 
-MOST_BYTES = 20_000_000
+MOST_BYTES = 20 * 2**20
+MOST_PARTS = 1_000  # joints, links, materials, and what is seen of links, of each
+LONGEST_NAME = 1_000  # of a mesh
+GREATEST = 1e6  # number, in metres or radians
 GREY = "#c9c9c9"
 
 
@@ -89,6 +94,9 @@ def read_urdf(path: str | Path) -> Description:
             than six turning joints in one chain.
     """
     root = _xml(Path(path))
+    for tag in ("joint", "link", "material", "link/visual"):
+        if len(root.findall(tag)) > MOST_PARTS:
+            raise InputError(f"more than {MOST_PARTS:,} of {tag}", where=str(path), accepted=f"{MOST_PARTS:,} or less")
     joints = [_joint(entry, str(path)) for entry in root.findall("joint")]
     moving = [joint for joint in joints if joint.axis is not None]
     children = {joint.child for joint in joints}
@@ -97,6 +105,10 @@ def read_urdf(path: str | Path) -> Description:
     if len(bases) != 1:
         raise InputError(f"{len(bases)} links that nothing carries", where=str(path), accepted="one base link")
     by_child = {joint.child: joint for joint in joints}
+    if len(by_child) < len(joints):
+        raise InputError(
+            "a link that two joints carry", where=str(path), accepted="each link as the child of one joint"
+        )
     ends = [joint for joint in moving if _depth(joint, by_child, str(path)) == 6]
     if len(moving) != 6 or len(ends) != 1:
         raise InputError(
@@ -123,15 +135,11 @@ def _xml(path: Path) -> Any:
     from defusedxml.ElementTree import ParseError, fromstring
 
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError("larger than 20 MB", where=str(path), accepted="a robot description")
-        root = fromstring(path.read_bytes(), forbid_dtd=True)
-    except OSError as error:
-        raise InputError(f"cannot be read: {error.strerror}", where=str(path), accepted="a URDF file") from None
+        root = fromstring(read_bytes(path, "a URDF file", MOST_BYTES), forbid_dtd=True)
     except DefusedXmlException:
         message = "holds a document type or entities, which are not read"
         raise InputError(message, where=str(path), accepted="plain XML") from None
-    except (ParseError, ValueError) as error:
+    except (ParseError, ValueError, LookupError) as error:  # LookupError: an encoding that nobody knows
         raise InputError(f"is no XML: {error}", where=str(path), accepted="a URDF file") from None
     if root.tag != "robot":
         raise InputError(
@@ -195,13 +203,17 @@ def _visual(entry: Any, folder: Path, colours: dict[str, str], where: str) -> Vi
 
 def _inside(name: str, folder: Path, where: str) -> Path:
     """The mesh's file, which must lie in the folder of the description."""
-    parts = urlsplit(name)
-    if parts.scheme not in ("", "package", "file"):
-        raise InputError(f"the mesh {name}", where=where, accepted="a path inside the file's folder, or package://")
-    for path in _places(PurePosixPath(parts.path.lstrip("/") if parts.scheme else name), folder):
-        found = path.resolve()
-        if found.is_relative_to(folder) and found.is_file():
-            return found
+    accepted = "a path inside the file's folder, or package://"
+    try:
+        parts = urlsplit(name)
+        if len(name) > LONGEST_NAME or parts.scheme not in ("", "package", "file"):
+            raise InputError(f"the mesh {reprlib.repr(name)}", where=where, accepted=accepted)
+        for path in _places(PurePosixPath(parts.path.lstrip("/") if parts.scheme else name), folder):
+            found = path.resolve()
+            if found.is_relative_to(folder) and found.is_file():
+                return found
+    except (OSError, ValueError, RuntimeError):  # a name that no file can have; links that lead in a circle
+        raise InputError(f"the mesh {reprlib.repr(name)}", where=where, accepted=accepted) from None
     raise InputError(f"no mesh {name} inside {folder}", where=where, accepted="meshes in the folder of the file")
 
 
@@ -239,6 +251,7 @@ def _numbers(text: str | None, count: int, where: str) -> tuple[float, ...]:
         values = tuple(map(float, (text or "").split()))
     except ValueError:
         values = ()
-    if len(values) != count or not np.isfinite(values).all():
-        raise InputError(f"'{text}' is not {count} numbers", where=where, accepted=f"{count} finite numbers")
+    if len(values) != count or not all(abs(value) <= GREATEST for value in values):
+        accepted = f"{count} numbers from {-GREATEST:g} to {GREATEST:g}"
+        raise InputError(f"{reprlib.repr(text)} is not {count} numbers", where=where, accepted=accepted)
     return values

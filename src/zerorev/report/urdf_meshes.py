@@ -6,6 +6,7 @@ arms, and what does not agree within 1 mm is refused: better no picture than one
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import numpy.typing as npt
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
+from zerorev.model.text import read_bytes
 from zerorev.report.arm_shapes import chain, link_frames
 from zerorev.report.urdf import Description, Joint, Visual, read_urdf
 
@@ -201,8 +203,10 @@ def _loaded(path: Path) -> Any:
             f"a mesh of the kind .{kind}", where=str(path), accepted=f"{', '.join(FORMATS)}; convert it, e.g. to STL"
         )
     try:
-        with path.open("rb") as stream:
-            found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
+        stream = io.BytesIO(read_bytes(path, "a mesh"))
+        found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
+    except InputError:
+        raise
     except Exception as error:  # whatever its readers stumble over
         raise InputError(f"cannot be read: {error}", where=str(path), accepted="a sound mesh") from None
     if not isinstance(found, trimesh.Trimesh) or not len(found.faces) or not np.isfinite(found.vertices).all():
