@@ -26,6 +26,7 @@ __all__ = [
     "MAX_DEPTH",
     "MAX_KEYS",
     "MAX_ROWS",
+    "MAX_VALUES",
     "Document",
     "csv_rows",
     "csv_text",

@@ -21,6 +21,7 @@ from zerorev.program.krl_source import shape, statements, words
 
 __all__ = ["read_krl", "read_program"]
 
+MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 NAME = re.compile(r"[A-Z][A-Z0-9_]{0,23}", re.IGNORECASE)
 
@@ -34,7 +35,7 @@ def read_program(path: str | Path) -> WrittenProgram:
     Raises:
         InputError: a file that cannot be read, or a statement that `export` does not write.
     """
-    content = read_bytes(Path(path), "a program that zerorev has exported (KRL, .src)")
+    content = read_bytes(Path(path), "a program that zerorev has exported (KRL, .src)", MOST_BYTES)
     # byte by byte, so that a message can name the line of one that is not ASCII
     return read_krl(content.removeprefix(BYTE_ORDER_MARK).decode("latin-1"), str(path))
 

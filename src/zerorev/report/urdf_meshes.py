@@ -27,6 +27,7 @@ AGREE = 1e-3  # [m] between the axes of the two arms, and their flanges
 PARALLEL = 1e-3  # [1] between the directions of their axes
 FORMATS = ("stl", "obj", "ply", "glb")
 MOST_TRIANGLES = 400_000
+MOST_MESH = 24 * 2**20  # [bytes] of the file of one
 LOOKS = 12  # joint positions at which the two arms are compared
 QUARTERS = (0.0, np.pi / 2, -np.pi / 2, np.pi)  # offsets of a joint that are looked for, the nearest first
 
@@ -203,7 +204,7 @@ def _loaded(path: Path) -> Any:
             f"a mesh of the kind .{kind}", where=str(path), accepted=f"{', '.join(FORMATS)}; convert it, e.g. to STL"
         )
     try:
-        stream = io.BytesIO(read_bytes(path, "a mesh"))
+        stream = io.BytesIO(read_bytes(path, "a mesh", MOST_MESH))
         found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
     except InputError:
         raise

@@ -1,0 +1,184 @@
+"""Time and memory of the largest input that each reader accepts, each in a process of its own.
+
+    python -m benchmarks.readers_study
+
+The table stands in docs/security.md.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import re
+import struct
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import zerorev as zr
+from zerorev.model.files import plan_to_json, read_plan
+from zerorev.model.map_file import read_map_file
+from zerorev.model.schema import MOST_HOLES
+from zerorev.model.sheet import MAX_ROWS as MOST_PASTED
+from zerorev.model.sheet import sheet_rows
+from zerorev.model.text import MAX_BYTES, MAX_ROWS
+from zerorev.model.text import MAX_VALUES as JSON_VALUES
+from zerorev.model.yaml_text import MAX_VALUES
+from zerorev.program.export import export
+from zerorev.program.read_back import MOST_BYTES, read_program
+from zerorev.report.urdf import MOST_PARTS, read_urdf
+from zerorev.report.urdf_meshes import MOST_MESH, _loaded
+
+HEAD = "robot: kuka_kr6_r700_2\ntool: thesis_drill\n"
+VALUES_OF_A_HOLE = 12
+COLUMNS = "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The largest input of a reader.
+
+    Attributes:
+        what: in words.
+        write: makes it in a folder; returns its path.
+        read: reads it.
+    """
+
+    what: str
+    write: Callable[[Path], Path]
+    read: Callable[[Path], object]
+
+
+def _job(folder: Path) -> Path:
+    line = "  - {{id: h{}, target_mm: [500.25, 300, 800], direction: [1, 0, 0], depth_mm: 20}}\n"
+    holes = "".join(map(line.format, range(MAX_VALUES // VALUES_OF_A_HOLE - 2)))
+    return _written(folder / "job.yaml", f"{HEAD}holes:\n{holes}")
+
+
+def _table(count: int) -> str:
+    return f"{COLUMNS}\n" + "".join(f"h{n},500.25,300.5,800,1,0,0,20\n" for n in range(count))
+
+
+def _csv(folder: Path) -> Path:
+    _written(folder / "holes.csv", _table(MOST_HOLES))
+    return _written(folder / "job.yaml", f"{HEAD}holes: holes.csv\n")
+
+
+def _points(folder: Path) -> Path:
+    _written(folder / "p.csv", "id,x_mm,y_mm,z_mm\n" + "".join(f"p{n},500.25,{n},800\n" for n in range(MAX_ROWS)))
+    return _written(folder / "map.yaml", f"{HEAD}points: p.csv\ndirections: [[1, 0, 0]]\n")
+
+
+def _grid(folder: Path) -> Path:
+    ends = {"x": 1000, "y": 1000, "z": 100}
+    axes = "".join(f"  {name}_mm: {{start: 1, stop: {end}, step: 1}}\n" for name, end in ends.items())
+    return _written(folder / "map.yaml", f"{HEAD}directions: [[1, 0, 0]]\ntargets:\n{axes}")
+
+
+def _planned() -> Any:
+    hole = zr.Hole("h", [0.5, 0.3, 0.8], [1, 0, 0], 0.02)
+    settings = zr.Settings(min_rate=0.0, proof_boxes=0)
+    return zr.plan_job(zr.Job(zr.read_robot("kuka_kr6_r700_2"), zr.read_tool("thesis_drill"), (hole,), settings))
+
+
+def _plan(folder: Path) -> Path:
+    data = plan_to_json(_planned())
+    (hole,) = data["holes"]
+    text = json.dumps(hole)
+    count = min(MAX_BYTES // (len(text) + 10), (JSON_VALUES - 1000) // (1 + sum(map(text.count, ",[{"))))
+    data["holes"] = [hole | {"id": f"h{n}"} for n in range(count)]
+    return _written(folder / "plan.json", json.dumps(data))
+
+
+def _program(folder: Path) -> Path:
+    text = export(_planned()).text
+    begins = text.index("; hole") if "; hole" in text else text.index("PTP {")
+    head, hole, end = text[:begins], text[begins : text.rindex("END")], text[text.rindex("END") :]
+    count = (MOST_BYTES - len(text)) // len(hole.encode()) - 1
+    return _written(folder / "p.src", head + hole * count + end)
+
+
+def _urdf(folder: Path) -> Path:
+    joint = (
+        '<link name="l{0}"/><joint name="j{0}" type="{1}"><parent link="{2}"/><child link="l{0}"/>'
+        '<origin xyz="0.1 0 0" rpy="0 0 0"/><axis xyz="0 0 1"/></joint>'
+    )
+    kinds = ["revolute"] * 6 + ["fixed"] * (MOST_PARTS - 7)
+    parts = (joint.format(n, kind, f"l{n - 1}" if n else "base") for n, kind in enumerate(kinds))
+    blank = "<!--" + "x" * (19 * 2**20) + "-->"
+    return _written(folder / "r.urdf", f'<robot name="r">{blank}<link name="base"/>{"".join(parts)}</robot>')
+
+
+def _mesh(folder: Path) -> Path:
+    triangle = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 0, 0)
+    count = MOST_MESH // len(triangle) - 2
+    path = folder / "m.stl"
+    path.write_bytes(b"\0" * 80 + struct.pack("<I", count) + triangle * count)
+    return path
+
+
+def _pasted(folder: Path) -> Path:
+    return _written(folder / "t.csv", _table(MOST_PASTED))
+
+
+def _sheet(path: Path) -> object:
+    return sheet_rows(path.read_text(), "base_y", zr.read_tool("thesis_drill"), np.eye(4))
+
+
+def _written(path: Path, text: str) -> Path:
+    path.write_text(text)
+    return path
+
+
+WORST = (
+    Worst(f"job (YAML), {MAX_VALUES:,} values", _job, zr.read_job),
+    Worst(f"job, holes in a CSV file, {MOST_HOLES:,}", _csv, zr.read_job),
+    Worst(f"plan (JSON), {JSON_VALUES:,} values", _plan, read_plan),
+    Worst("map (YAML), 100,000,000 cells", _grid, read_map_file),
+    Worst(f"map, points in a CSV file, {MAX_ROWS:,}", _points, read_map_file),
+    Worst(f"pasted table, {MOST_PASTED:,} rows", _pasted, _sheet),
+    Worst("program (KRL), 16 MiB", _program, read_program),
+    Worst("robot description (URDF), 20 MiB", _urdf, read_urdf),
+    Worst("mesh (STL), 24 MiB", _mesh, _loaded),
+)
+
+
+def _measured(number: int, path: Path, told: Any) -> None:
+    began, worst = time.perf_counter(), WORST[number]
+    try:
+        worst.read(path)
+        said = "read"
+    except zr.ZerorevError as error:
+        said = str(error)[:100]
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    peak = re.search(r"VmHWM:\s*(\d+)", status)
+    assert peak
+    told.put((time.perf_counter() - began, int(peak[1]) / 1024, said))
+
+
+def main() -> None:
+    """Print the table; of some readers alone, by their numbers on the command line."""
+    chosen = [int(number) for number in sys.argv[1:]] or range(len(WORST))
+    context = multiprocessing.get_context("spawn")
+    print("| input | file | time | memory |\n|---|---|---|---|")
+    for number in chosen:
+        worst = WORST[number]
+        with tempfile.TemporaryDirectory() as folder:
+            path, told = worst.write(Path(folder)), context.Queue()
+            process = context.Process(target=_measured, args=(number, path, told))
+            process.start()
+            seconds, megabytes, said = told.get()
+            process.join()
+            size = sum(file.stat().st_size for file in Path(folder).iterdir()) / 2**20
+            note = "" if said == "read" else f" ({said})"
+            print(f"| {worst.what}{note} | {size:.1f} MiB | {seconds:.1f} s | {megabytes:.0f} MiB |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
