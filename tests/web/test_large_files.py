@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import time
 
 import pytest
+
+from zerorev.jobs import plan_job
+from zerorev.model.files import job_from_text, write_plan
 
 pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
@@ -21,11 +25,12 @@ MANY_EMPTY = b'{"format": "zerorev.plan/1", "holes": [' + b"{}," * 100_000 + b"{
 
 
 def uploaded(page, name, content):
-    """Pick a file in the browser's dialog."""
+    """Pick a file, given by its content or its path, in the browser's dialog."""
     page.get_by_test_id("open").click()
     with page.expect_file_chooser() as waiting:
         page.get_by_test_id("open-file").click()
-    waiting.value.set_files({"name": name, "mimeType": "text/plain", "buffer": content})
+    in_memory = isinstance(content, bytes)
+    waiting.value.set_files({"name": name, "mimeType": "text/plain", "buffer": content} if in_memory else content)
 
 
 @pytest.fixture
@@ -76,3 +81,54 @@ def test_ten_thousand_rows_are_pasted_beside_the_page(ready, say):
     expect(ready.get_by_test_id("paste-rows")).to_contain_text("and 9801 rows more")
     ready.get_by_test_id("form-done").click()
     expect(ready.get_by_test_id("holes-shown")).to_have_text("10003 holes")
+
+
+MANY = 10_000
+# how long [ms] it takes until the page shows a hole and has drawn it
+SHOWN = """number => new Promise((done) => {
+    const began = performance.now(), page = document.querySelector('[data-testid="page"]');
+    const look = () => page.textContent.includes(`hole ${number} of`)
+        ? requestAnimationFrame(() => setTimeout(() => done(performance.now() - began))) : requestAnimationFrame(look);
+    look();
+})"""
+
+
+@pytest.fixture(scope="module")
+def large_plan(tmp_path_factory):
+    """A plan of 30 MB: one hole's answer under ten thousand names."""
+    path = tmp_path_factory.mktemp("large") / "large.plan.json"
+    one = JOB.replace("  - {id: second, target_mm: [500, 300, 790], direction: [1, 0, 0], depth_mm: 20}\n", "")
+    write_plan(plan_job(job_from_text(one, "one.yaml")), path)
+    data = json.loads(path.read_text())
+    (answer,) = data["holes"]
+    data["holes"] = [answer | {"id": f"h{n:05d}"} for n in range(MANY)]
+    path.write_text(json.dumps(data, indent=1))
+    assert path.stat().st_size > 25e6
+    return path
+
+
+@pytest.mark.long
+def test_ten_thousand_holes_are_usable_from_a_path_and_from_an_upload(serve, open_page, large_plan, say):
+    began = time.perf_counter()
+    server = serve(large_plan)
+    page = open_page(server)
+    expect(page.get_by_test_id("holes-shown")).to_have_text("10000 holes", timeout=60_000)
+    say(f"10,000 planned holes, a plan of {large_plan.stat().st_size / 1e6:.0f} MB: "
+        f"{time.perf_counter() - began:.1f} s from the command to the table")  # fmt: skip
+    expect(page.get_by_test_id("curves")).to_contain_text("A1", timeout=60_000)
+    page.get_by_test_id("holes").get_by_text("h00000").first.click()
+    times = []
+    for number in range(2, 8):
+        page.wait_for_timeout(500)
+        page.evaluate(f"void (window.shown = ({SHOWN})({number}))")
+        page.keyboard.press("ArrowDown")
+        times.append(page.evaluate("window.shown"))
+    say(f"10,000 holes: the next is drawn after {min(times):.0f} to {max(times):.0f} ms")
+    assert min(times) < 2000
+    uploaded(page, large_plan.name, large_plan)
+    expect(page.get_by_test_id("waiting")).to_contain_text("Reading")
+    page.get_by_test_id("hole-next").click()
+    expect(page.get_by_test_id("page")).to_contain_text("hole 8 of 10000")
+    expect(page.get_by_test_id("waiting")).to_have_count(0, timeout=120_000)
+    expect(page.get_by_test_id("page")).to_contain_text("hole 1 of 10000", timeout=60_000)
+    expect(page.get_by_test_id("holes-shown")).to_have_text("10000 holes", timeout=60_000)

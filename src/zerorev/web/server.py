@@ -211,6 +211,7 @@ class _Server(uvicorn.Server):
                 http=Connection,
                 ws="wsproto",
                 ws_max_size=LARGEST_MESSAGE,
+                ws_per_message_deflate=False,  # it goes over no network, and every page would wait for it
                 server_header=False,
                 proxy_headers=False,
                 timeout_graceful_shutdown=1,

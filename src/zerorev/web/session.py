@@ -144,7 +144,8 @@ def undone(state: State, before: State) -> State:
     since = (
         answer
         for key, answer in state.answers.items()
-        if key not in before.answers or not (_by_hand(answer) or _by_hand(before.answers[key]))
+        if (old_answer := before.answers.get(key)) is not answer
+        and (old_answer is None or not (_by_hand(answer) or _by_hand(old_answer)))
     )
     return replace(answered(before, *since, strokes=before.strokes), steered=before.steered)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -101,7 +102,7 @@ class State:
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
 
-    @property
+    @cached_property
     def hole(self) -> Hole | None:
         """The selected hole."""
         if self.job is None:

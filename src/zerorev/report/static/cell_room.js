@@ -4,6 +4,7 @@ import { THREE } from "nicegui-scene";
 export const UNPLANNED = -1, INFEASIBLE = -2;
 const HOLE = 4.5, AXES = ["#c8442f", "#2f8f4e", "#2f62c8"], LETTERS = ["x", "y", "z"];
 const MANY = 200; // holes, of which each is so small that it need not be as round
+const CROWD = 2000; // holes, of which each is a spot: a machine without a graphics card draws them in each frame, too
 
 export function floats(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -172,9 +173,12 @@ export class Holes {
     this.onPlates = plates.length > 0;
   }
 
-  // each hole a short cylinder and a rim at its mouth; on a face that is not drawn, a small disc around it
-  _bodies() {
-    const count = this.ids.length, [wall, rim, round] = count > MANY ? [8, 12, 4] : [16, 24, 8], parts = [
+  // of each hole, which geometries, whether they reach down to its bottom, and their looks
+  _parts(count) {
+    const spot = () => new THREE.CircleGeometry(1.5 * HOLE, 6).rotateX(Math.PI / 2);
+    if (count > CROWD) return [[spot(), false, { side: THREE.DoubleSide }]];
+    const [wall, rim, round] = count > MANY ? [8, 12, 4] : [16, 24, 8];
+    const parts = [
       [new THREE.CylinderGeometry(HOLE, HOLE, 1, wall, 1, true).translate(0, -0.5, 0), true, { side: THREE.BackSide }],
       [new THREE.TorusGeometry(1.3 * HOLE, 0.35 * HOLE, round, rim).rotateX(Math.PI / 2), false, {}],
     ];
@@ -182,6 +186,12 @@ export class Holes {
       new THREE.CylinderGeometry(5 * HOLE, 5 * HOLE, 0.6, 28).translate(0, -1, 0), false,
       { transparent: true, opacity: 0.3, depthWrite: false },
     ]);
+    return parts;
+  }
+
+  // each hole a short cylinder and a rim at its mouth; on a face that is not drawn, a small disc around it
+  _bodies() {
+    const count = this.ids.length, parts = this._parts(count);
     const [place, turn, size, way] = [new THREE.Vector3(), new THREE.Quaternion(), new THREE.Vector3(), new THREE.Vector3()];
     const to = new THREE.Matrix4();
     return parts.map(([geometry, stretched, look]) => {

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from html import escape
 from typing import Any
 
+import numpy as np
 from nicegui import events, ui
 
 from zerorev.errors import InputError
@@ -149,19 +150,18 @@ def _rows(state: State, old: Mapping[str, HoleRow], before: State | None) -> dic
     """The rows by their ids; those of holes that are as they were are the same objects."""
     if state.job is None:
         return {}
-    T, was = state.job.T_base_part, {} if before is None or before.job is None else _by_id(before)
+    T = state.job.T_base_part
+    was: Mapping[str, Hole] = {}
+    if before is not None and before.job is not None and np.array_equal(before.job.T_base_part, T):
+        was = {hole.id: hole for hole in before.job.holes}
+    answers, known = state.answers, {} if before is None else before.answers
     rows = {}
     for hole in state.job.holes:
-        answer = state.answers.get(hole.id)
-        same = was.get(hole.id) == (id(hole), id(answer)) and hole.id in old
-        rows[hole.id] = old[hole.id] if same else hole_row(hole, answer, T)
+        key = hole.id
+        answer = answers.get(key)
+        same = was.get(key) is hole and known.get(key) is answer and key in old
+        rows[key] = old[key] if same else hole_row(hole, answer, T)
     return rows
-
-
-def _by_id(state: State) -> dict[str, tuple[int, int]]:
-    """Of each hole, which objects its row was made of."""
-    assert state.job is not None
-    return {hole.id: (id(hole), id(state.answers.get(hole.id))) for hole in state.job.holes}
 
 
 def _tools(session: Session, table: _Table) -> None:

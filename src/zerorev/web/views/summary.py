@@ -50,7 +50,8 @@ def summary(session: Session) -> None:
         line = _headline(session.state, job)
         name.set_text(hole.id)
         name.props["title"] = hole.id
-        place.set_text(f"hole {job.holes.index(hole) + 1} of {len(job.holes)}" if len(job.holes) > 1 else "one hole")
+        number = next(n for n, each in enumerate(job.holes, 1) if each is hole)  # `index` would compare their arrays
+        place.set_text(f"hole {number} of {len(job.holes)}" if len(job.holes) > 1 else "one hole")
         count.set_content(_count(line))
         for figure, text in zip(FIGURES, _figures(line), strict=True):
             cells[figure].set_content(text)
