@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import ctypes
+import gc
 import logging
 import multiprocessing
 import os
@@ -40,6 +42,7 @@ __all__ = ["Pages", "serve"]
 LOOPBACK = "127.0.0.1"
 USUAL_PORT = 8780
 MOST_PAGES = 50  # of which the state is kept
+MOST_HOLES = 20_000  # of all the jobs of pages that were left, beside the one that was left last
 RECONNECT = 20.0  # [s] that a lost connection is waited for before its page is built anew, from the same state
 FAREWELL = 0.2  # [s] for the last words to reach the browser
 LARGEST_MESSAGE = 2 * 2**20  # [bytes] of what a page says over its socket
@@ -115,7 +118,7 @@ class Pages:
         kept.client = client
         kept.session.unwatch()
         kept.session.page = lambda: client
-        client.on_delete(lambda: _gone(kept, client))
+        client.on_delete(lambda: self._gone(tab, client))
         page.build(kept.session, kept.work)
 
     def end(self) -> None:
@@ -126,19 +129,40 @@ class Pages:
             process.terminate()
             process.join(FAREWELL)
 
+    def _gone(self, tab: str, client: Client) -> None:
+        """A page is left; where its tab has another by now, as after a reload, that one stays."""
+        kept = self._pages.get(tab)
+        if kept is not None and kept.client is client:
+            kept.client = None
+            kept.session.unwatch()
+            kept.session.page = nullcontext
+            self._pages.move_to_end(tab)
+            self._forget()
+
     def _forget(self) -> None:
-        """Drop the sessions that were left longest ago."""
+        """Drop the sessions that were left longest ago, where there are many, or those that are left are large."""
         left = [tab for tab, kept in self._pages.items() if kept.client is None and not kept.work.busy]
-        for tab in left[: max(0, len(self._pages) - MOST_PAGES)]:
-            del self._pages[tab]
+        shown = {id(kept.session.state.job) for kept in self._pages.values() if kept.client is not None}
+        too_many = len(self._pages) - MOST_PAGES
+        before, holes = len(self._pages), 0
+        for number, tab in enumerate(reversed(left)):
+            job = self._pages[tab].session.state.job
+            if job is not None and id(job) not in shown:
+                shown.add(id(job))
+                holes += len(job.holes)
+            if len(left) - number <= too_many or (number and holes > MOST_HOLES):
+                del self._pages[tab]
+        if len(self._pages) < before:
+            _give_back()
 
 
-def _gone(kept: _Page, client: Client) -> None:
-    """A page is left; where its tab has another by now, as after a reload, that one stays."""
-    if kept.client is client:
-        kept.client = None
-        kept.session.unwatch()
-        kept.session.page = nullcontext
+def _give_back() -> None:
+    """Give memory that is free back to the system, which the allocator of Linux would keep."""
+    gc.collect()
+    if sys.platform == "linux":
+        trim = getattr(ctypes.CDLL(None), "malloc_trim", None)  # glibc has it
+        if trim is not None:
+            trim(0)
 
 
 def _site(pages: Pages) -> FastAPI:

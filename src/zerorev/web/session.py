@@ -75,7 +75,9 @@ class Session:
         """
         if self.state.job is not None and _edited(self.state, state):
             if of is None or of is not self._step:
-                self._past = [*self._past[1 - KEPT :], self.state]
+                # of other files, which may be large, the one before is enough
+                past = self._past[1 - KEPT :] if _same_file(self.state, state) else []
+                self._past = [*past, self.state]
             self._step = of
             self._future = []
         self._show(state)
@@ -122,6 +124,10 @@ class Session:
             for view in tuple(self._views):
                 if view in self._views:  # one that is told first may build the page anew
                     view(before, state)
+
+
+def _same_file(before: State, after: State) -> bool:
+    return before.job is not None and after.job is not None and before.job.robot is after.job.robot
 
 
 def _edited(before: State, after: State) -> bool:
