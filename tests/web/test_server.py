@@ -274,3 +274,47 @@ def test_work_outlives_its_page_and_ends_with_the_app(tmp_path):
     assert process.returncode == INTERRUPTED, errors
     assert "Traceback" not in errors
     assert not left(process.pid)
+
+
+# --- memory -----------------------------------------------------------------------------------------------------------
+
+KEPT_FREE = 40.0  # [MB] that an allocator may keep for later
+
+
+def memory(server) -> float:
+    """What a server has of the machine's memory [MB]."""
+    status = Path(f"/proc/{server.pid}/status").read_text()
+    return int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) / 1024
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="reads what Linux says of a process")
+def test_sockets_give_their_memory_back(demo, say):
+    with asks(demo) as client:
+        prefix = prefix_of(page_of(client, demo))
+    for _ in range(50):
+        handshake(demo, prefix, demo.origin)
+    before = memory(demo)
+    for _ in range(1000):
+        handshake(demo, prefix, demo.origin)
+    after = memory(demo)
+    say(f"memory of the app: {before:.0f} MB, after 1,000 sockets more {after:.0f} MB")
+    assert after < before + KEPT_FREE
+
+
+@pytest.mark.soak
+@pytest.mark.skipif(not Path("/proc/self/status").is_file(), reason="reads what Linux says of a process")
+def test_pages_give_their_memory_back(demo, say):
+    async def visit(numbers: range) -> None:
+        web = httpx.AsyncClient(base_url=demo.origin, timeout=PATIENCE, trust_env=False, follow_redirects=True)
+        async with web:
+            for number in numbers:
+                async with Page(demo.address, web, f"tab {number}") as page:
+                    await page.find("plan")
+
+    asyncio.run(visit(range(60)))  # as many as are kept, and the libraries that are loaded when they are needed
+    before = memory(demo)
+    asyncio.run(visit(range(60, 260)))
+    after = memory(demo)
+    say(f"memory of the app: {before:.0f} MB, after 200 pages more {after:.0f} MB")
+    assert after < before + KEPT_FREE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 
 import pytest
 
@@ -122,3 +123,19 @@ def test_a_drag_that_is_dropped_leaves_no_step(session):
     session.undo()
     assert session.state.steered is None
     assert not session.can_undo
+
+
+def test_of_the_files_opened_before_the_last_one_is_kept(robot, tool, positions):
+    """Each may be large; the way back within one file is as long as ever."""
+    session = Session(State())
+    files = [opened_job(Job(replace(robot, name=f"r{n}"), tool, (positions[0].hole,))) for n in range(4)]
+    for file in files:
+        session.change(file)
+        session.change(with_hole(session.state, replace(positions[0].hole, id="more")))
+    session.undo()
+    assert session.state.job is files[3].job
+    session.undo()
+    assert session.state.job.robot is files[2].job.robot
+    assert not session.can_undo
+    session.redo()
+    assert session.state.job is files[3].job

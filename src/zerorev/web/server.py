@@ -113,9 +113,9 @@ class Pages:
             beside = self._pages.get(before) if before else None
             session = Session(beside.session.state if beside else self._first)
             kept = self._pages[tab] = _Page(session, Work(session))
-            self._forget()
         self._pages.move_to_end(tab)
         kept.client = client
+        self._forget()
         kept.session.unwatch()
         kept.session.page = lambda: client
         client.on_delete(lambda: self._gone(tab, client))
