@@ -44,16 +44,15 @@ def test_a_job_is_uploaded(ready):
     expect(ready.get_by_test_id("page")).to_contain_text("hole 1 of 2")
     expect(ready.get_by_test_id("waiting")).to_have_count(0)
     uploaded(ready, "bad.yaml", b"robot: [")
-    expect(ready.get_by_role("alert").filter(has_text="bad.yaml, line 1")).to_be_visible()
+    expect(ready.get_by_role("alert").filter(has_text="bad.yaml, line ")).to_be_visible()
     expect(ready.get_by_test_id("page")).to_contain_text("hole 1 of 2")
 
 
 def test_a_file_that_is_long_to_read_holds_up_nobody(ready, open_page, demo, say):
-    """Neither its own page nor another; it can be cancelled."""
+    """Neither its own page nor another, until it is refused."""
     other = open_page(demo)
     expect(other.get_by_test_id("reversals")).to_have_text("0", timeout=120_000)
     uploaded(ready, "empty.json", MANY_EMPTY)
-    expect(ready.get_by_test_id("waiting")).to_contain_text("Reading empty.json")
     waits = []
     for page in (other, ready):
         asked = time.perf_counter()
@@ -61,9 +60,8 @@ def test_a_file_that_is_long_to_read_holds_up_nobody(ready, open_page, demo, say
         expect(page.get_by_test_id("page")).to_contain_text("hole 2 of 3")
         waits.append(time.perf_counter() - asked)
     say(f"while a hostile file is read, a click on a hole shows it within {max(waits):.2f} s")
-    if ready.get_by_test_id("waiting").count():  # not refused yet
-        ready.get_by_test_id("waiting").get_by_text("Cancel").click()
     expect(ready.get_by_test_id("waiting")).to_have_count(0)
+    expect(ready.get_by_role("alert").filter(has_text="empty.json")).to_be_visible()
     expect(ready.get_by_test_id("page")).to_contain_text("hole 2 of 3")
     ready.reload()
     expect(ready.get_by_test_id("page")).to_contain_text("hole 2 of 3")
@@ -125,6 +123,9 @@ def test_ten_thousand_holes_are_usable_from_a_path_and_from_an_upload(serve, ope
         times.append(page.evaluate("window.shown"))
     say(f"10,000 holes: the next is drawn after {min(times):.0f} to {max(times):.0f} ms")
     assert min(times) < 2000
+    uploaded(page, large_plan.name, large_plan)
+    page.locator(".q-notification").get_by_text("Cancel").click()
+    expect(page.get_by_test_id("waiting")).to_have_count(0)
     uploaded(page, large_plan.name, large_plan)
     expect(page.get_by_test_id("waiting")).to_contain_text("Reading")
     page.get_by_test_id("hole-next").click()

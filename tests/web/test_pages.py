@@ -10,9 +10,9 @@ pytest.importorskip("nicegui")
 
 from oracles.published import POSITIONS
 from zerorev.model.job import Job
-from zerorev.web import server
+from zerorev.web import pages as kept
 from zerorev.web.computing import Work
-from zerorev.web.server import Pages
+from zerorev.web.pages import Pages
 from zerorev.web.session import Session
 from zerorev.web.state import State, opened_job
 
@@ -39,7 +39,7 @@ def job(robot, tool):
 def visit(pages, tab, state=None):
     """A tab is opened."""
     session = Session(State() if state is None else state)
-    pages._pages[tab] = server._Page(session, Work(session), Client())
+    pages._pages[tab] = kept._Page(session, Work(session), Client())
 
 
 def leave(pages, tab):
@@ -47,14 +47,14 @@ def leave(pages, tab):
 
 
 def test_fifty_small_ones(pages, job):
-    for number in range(server.MOST_PAGES + 5):
+    for number in range(kept.MOST_PAGES + 5):
         visit(pages, f"tab {number}", opened_job(job(1)))
         leave(pages, f"tab {number}")
-    assert list(pages._pages) == [f"tab {number}" for number in range(5, server.MOST_PAGES + 5)]
+    assert list(pages._pages) == [f"tab {number}" for number in range(5, kept.MOST_PAGES + 5)]
 
 
 def test_of_large_ones_the_last_that_were_left(pages, job, monkeypatch):
-    monkeypatch.setattr(server, "MOST_HOLES", 50)
+    monkeypatch.setattr(kept, "MOST_HOLES", 50)
     for name in "abcd":
         visit(pages, name, opened_job(job(20)))
     visit(pages, "in use", opened_job(job(1000)))
@@ -67,7 +67,7 @@ def test_of_large_ones_the_last_that_were_left(pages, job, monkeypatch):
 
 
 def test_tabs_of_one_job_count_once(pages, job, monkeypatch):
-    monkeypatch.setattr(server, "MOST_HOLES", 50)
+    monkeypatch.setattr(kept, "MOST_HOLES", 50)
     state = opened_job(job(40))
     for name in "abcd":
         visit(pages, name, state)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from zerorev.cli.common import FINE, Whole, app, need
@@ -35,10 +34,6 @@ def view(
     with terminal.busy("opening"):
         state = demo() if what is None else opened(what)
         state = state if urdf is None else with_meshes(state, urdf)
-        if urdf is not None and state.job is not None:
-            from zerorev.report.urdf_meshes import read_meshes
-
-            state = replace(state, meshes=read_meshes(urdf, state.job.robot))
 
     from zerorev.web.server import serve
 

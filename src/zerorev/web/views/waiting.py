@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
@@ -48,6 +49,9 @@ def do_apart(
                 pass
             except ZerorevError as error:
                 failed(str(error))
+            except Exception as error:
+                logging.getLogger("zerorev").exception("a fault in zerorev itself; please report the lines below")
+                failed(f"a fault in zerorev itself ({type(error).__name__}); the terminal says more")
             finally:
                 if not page.is_deleted:
                     note.dismiss()
