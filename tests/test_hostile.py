@@ -313,6 +313,24 @@ def test_an_output_never_takes_the_place_of_the_input(path, folder, capsys, monk
     assert Path("plan.json").read_bytes() == before
 
 
+@pytest.mark.parametrize(
+    ("there", "said"),
+    [
+        ("robot: kuka_kr6_r700_2\n", "it holds no answers of zerorev"),
+        ("DEF p ( )\nEND\n", "it holds no answers of zerorev"),
+        ('{"format": "zerorev.plan/1", "name": "wing", "robot": {}}', "it holds those of the job 'wing'"),
+        ('{"format": "zerorev.depth/1",\n  "name": "a \\u202e\\"b"}', r"""the job 'a \u202e"b'"""),
+    ],
+)
+def test_an_output_never_takes_the_place_of_another_jobs(there, said, folder, capsys):
+    (folder / "new.json").write_text(there)
+    refused(capsys, ["plan", folder / "job.yaml", "-o", folder / "new.json"], said)
+    assert (folder / "new.json").read_text() == there
+    (folder / "new.json").write_text("")
+    assert main(["plan", str(folder / "job.yaml"), "-o", str(folder / "new.json")]) == cli.FINE
+    assert main(["plan", str(folder / "job.yaml"), "-o", str(folder / "new.json")]) == cli.FINE
+
+
 def test_two_outputs_are_two_files(folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     refused(capsys, ["offset", "job.yaml", "-o", "a", "--figure", "./a"], "two outputs would be one file")

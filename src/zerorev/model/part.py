@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import sys
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
@@ -32,6 +33,8 @@ from zerorev.model.validation import checked
 __all__ = ["Part", "part_document"]
 
 FORMAT = "zerorev.part/2"
+ANSWERS = re.compile(r'\s*\{\s*"format":\s*"zerorev\.(?:plan|depth)/1",\s*"name":\s*("(?:[^"\\]|\\.)*")')
+MOST_HEAD = 2**12  # [bytes] within which a file of answers says what it is
 SUM = 9  # [bytes] at the end of a line: a blank, and the CRC-32 of what stands before it
 
 
@@ -53,9 +56,11 @@ class Part:
 
         Raises:
             InputError: what is there is the part of something else.
-            OutputError: it cannot be written, or another run is writing it.
+            OutputError: it cannot be written, another run is writing it, or another job's answers are there, or no
+                answers at all.
         """
         check_file(target)
+        _check_replaced(Path(target), plan.name)
         self.path, self.done = Path(f"{target}.part"), 0
         check_file(self.path)
         self._target, self._strokes = target, plan.strokes
@@ -139,6 +144,22 @@ class Part:
             self.path.unlink(missing_ok=True)
         with suppress(OSError):  # what could not be written, as on a full disk, it would try to write again
             self._stream.close()
+
+
+def _check_replaced(target: Path, name: str) -> None:
+    """Refuse to replace what a user would miss: answers of another job, a job, a program."""
+    with as_output_error(target):
+        if not target.exists():
+            return
+        with target.open("rb") as stream:
+            head = stream.read(MOST_HEAD).decode("utf-8", "replace")
+    if not head.strip():
+        return
+    found = ANSWERS.match(head)
+    if found is None:
+        raise OutputError(str(target), "it holds no answers of zerorev; delete it, or choose another name")
+    if (there := json.loads(found[1], strict=False)) != name:
+        raise OutputError(str(target), f"it holds those of the job '{there}'; delete it, or choose another name")
 
 
 def part_document(text: str, file: str) -> Document | None:

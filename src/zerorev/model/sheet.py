@@ -17,7 +17,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.conversion import hole_from
 from zerorev.model.hole import Hole
 from zerorev.model.schema import HoleForm
-from zerorev.model.text import Document, row_of
+from zerorev.model.text import Document, row_of, table_lines
 from zerorev.model.tool import Tool
 from zerorev.model.validation import problems
 
@@ -82,8 +82,9 @@ def sheet_rows(
 
 def _cells(text: str) -> Iterator[tuple[int, list[str]]]:
     """Of each line that is not empty, its number and its cells."""
-    first = next((line for line in text.splitlines() if line.strip()), "")
-    reader = csv.reader(text.splitlines(), delimiter=next((each for each in "\t;" if each in first), ","))
+    lines = table_lines(text, "table")
+    first = next((line for line in lines if line.strip()), "")
+    reader = csv.reader(lines, delimiter=next((each for each in "\t;" if each in first), ","))
     try:
         for cells in reader:
             stripped = [cell.strip() for cell in cells]

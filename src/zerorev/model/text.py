@@ -11,6 +11,7 @@ import io
 import json
 import math
 import os
+import re
 import reprlib
 import stat
 from collections.abc import Iterable, Iterator
@@ -36,6 +37,7 @@ __all__ = [
     "read_bytes",
     "read_text",
     "row_of",
+    "table_lines",
 ]
 
 MAX_BYTES = 64 * 2**20  # of one file
@@ -218,6 +220,23 @@ def _laid_out(data: Any, indent: int, used: int) -> str:
 # --- CSV --------------------------------------------------------------------------------------------------------------
 
 
+# blanks and ends of lines to Python, too
+CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028\u2029]")
+
+
+def table_lines(text: str, file: str) -> list[str]:
+    """The lines of a table.
+
+    Raises:
+        InputError: a control character, which one program takes for a blank and another for the end of a line.
+    """
+    lines = re.split(r"\r\n|\n|\r", text)
+    for number, line in enumerate(lines, 1):
+        if CONTROL.search(line):
+            raise InputError("holds a control character", where=f"{file}, line {number}", accepted="CSV")
+    return lines
+
+
 def csv_rows(
     text: str, file: str, label: str, numbers: tuple[str, ...], optional: tuple[str, ...] = ()
 ) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -239,7 +258,7 @@ def csv_rows(
     """
     columns = (label, *numbers)
     accepted = f"the columns {','.join(columns)}, separated by commas"
-    reader, rows = csv.reader(text.splitlines(), strict=True), 0
+    reader, rows = csv.reader(table_lines(text, file), strict=True), 0
     try:
         header = [cell.strip() for cell in next(reader, [])]
         where = f"{file}, line 1"
