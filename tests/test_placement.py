@@ -327,7 +327,7 @@ class TestCommand:
         link.symlink_to(job)
         for target in (job, link):
             assert cli.main(["place", str(job), option, str(target)]) == cli.BAD_INPUT
-            assert "it is the file that is read" in capsys.readouterr().err
+            assert "which is read" in capsys.readouterr().err
         assert job.read_bytes() == before
 
 

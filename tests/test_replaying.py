@@ -49,7 +49,7 @@ def test_unknown_hole(plan_file, tmp_path, capsys):
 def test_not_over_its_own_plan(plan_file, capsys):
     before = plan_file.read_bytes()
     assert main(["replay", str(plan_file), "-o", str(plan_file)]) == cli.BAD_INPUT
-    refused(capsys, "the file that is read")
+    refused(capsys, "which is read")
     assert plan_file.read_bytes() == before
 
 

@@ -139,7 +139,7 @@ class TestCommand:
 
     def test_the_jobs_are_not_written_over(self, files, tmp_path, capsys):
         assert cli.main(["share", *files, "--write-jobs", str(tmp_path)]) == cli.BAD_INPUT
-        assert "it is the file that is read" in capsys.readouterr().err
+        assert "which is read" in capsys.readouterr().err
         assert cli.main(["share", *files, "-o", files[1]]) == cli.BAD_INPUT
 
     def test_two_jobs_of_one_name(self, files, tmp_path, capsys):

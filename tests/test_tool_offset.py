@@ -225,4 +225,4 @@ class TestCommand:
     def test_the_job_is_not_written_over(self, job_file, capsys):
         job = job_file()
         assert cli.main(["offset", job, "-o", job]) == cli.BAD_INPUT
-        assert "it is the file that is read" in capsys.readouterr().err
+        assert "which is read" in capsys.readouterr().err

@@ -61,19 +61,16 @@ def place(
     """
     from zerorev.jobs import workers_for
     from zerorev.model.files import read_job
-    from zerorev.model.moved_job import check_new_job
     from zerorev.model.output import check_folder, write_text
     from zerorev.model.text import json_text
 
-    check_outputs((output,), job)
+    check_outputs((output, write_job), job)
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
     ranges = {"--x-mm": x_mm, "--y-mm": y_mm, "--z-mm": z_mm, "--turn-deg": turn_deg}
     ends = [_range(text, option) for option, text in ranges.items()]
     wanted = read_job(job)
-    if write_job is not None:
-        check_new_job(write_job, job)
 
     from zerorev.placement.freedom import Freedom
     from zerorev.report import placement as shown
@@ -168,8 +165,8 @@ def share(
     """
     from zerorev.jobs import workers_for
     from zerorev.model.files import read_job
-    from zerorev.model.moved_job import check_new_job, write_job
-    from zerorev.model.output import check_folder, make_folder, write_text
+    from zerorev.model.moved_job import write_job
+    from zerorev.model.output import check_file, check_folder, make_folder, write_text
     from zerorev.model.text import json_text
 
     check_outputs((output,), *jobs)
@@ -178,9 +175,9 @@ def share(
         check_folder(write_jobs)
         if len(set(targets)) < len(targets):
             raise InputError("two jobs have the same file name", where="--write-jobs", accepted="names that differ")
-        for target, job in zip(targets, jobs, strict=True):
+        for target in targets:
             if target.exists():
-                check_new_job(target, job)
+                check_file(target, *jobs)
     wanted = [read_job(job) for job in jobs]
 
     from zerorev import sharing

@@ -7,7 +7,6 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from zerorev.errors import OutputError
 from zerorev.model._arrays import Array, rpy_of
 from zerorev.model._units import deg, mm, plain
 from zerorev.model.output import check_file, write_text
@@ -15,20 +14,9 @@ from zerorev.model.schema import HoleForm
 from zerorev.model.text import csv_rows, read_text
 from zerorev.model.yaml_text import yaml_document, yaml_text
 
-__all__ = ["check_new_job", "frame_text", "write_job"]
+__all__ = ["frame_text", "write_job"]
 
 COLUMNS = ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
-
-
-def check_new_job(target: Path, source: Path) -> None:
-    """Make sure, before long work, that a job file can be written there, and is not the one that is read.
-
-    Raises:
-        OutputError: it cannot, or it is.
-    """
-    check_file(target)
-    if target.exists() and target.samefile(source):
-        raise OutputError(str(target), "it is the file that is read")
 
 
 def frame_text(T_base_part: Array) -> dict[str, list[float]]:
@@ -55,7 +43,7 @@ def write_job(
     Raises:
         OutputError: it cannot be written, or it is the file that is read.
     """
-    check_new_job(target, source)
+    check_file(target, source)
     data: dict[str, Any] = dict(yaml_document(read_text(source, "a job file (YAML)"), str(source)).data)
     data.setdefault("name", source.stem)
     if ids is not None:

@@ -230,7 +230,7 @@ def table_lines(text: str, file: str) -> list[str]:
     Raises:
         InputError: a control character, which one program takes for a blank and another for the end of a line.
     """
-    lines = re.split(r"\r\n|\n|\r", text)
+    lines = re.split(r"\r\n|\n|\r", text.removesuffix("\n"))
     for number, line in enumerate(lines, 1):
         if CONTROL.search(line):
             raise InputError("holds a control character", where=f"{file}, line {number}", accepted="CSV")
