@@ -249,7 +249,7 @@ def test_a_cell_is_no_formula(tmp_path, capsys):
     (tmp_path / "job.yaml").write_text(json.dumps(JOB | {"holes": holes}))
     command = ["compare", str(tmp_path / "job.yaml"), "--methods", "exact", "--seeds", "1"]
     assert main([*command, "-o", str(tmp_path / "c.csv")]) == cli.FINE
-    rows = list(csv.DictReader((tmp_path / "c.csv").open(encoding="utf-8")))
+    rows = list(csv.DictReader((tmp_path / "c.csv").read_text(encoding="utf-8").splitlines()))
     assert [row["hole"] for row in rows] == [*(f"'{name}" for name in names[:4]), r"\u202e=1"]
 
 
