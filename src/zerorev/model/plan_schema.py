@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from zerorev.model.schema import (
+    MOST_BREAKPOINTS,
     MOST_HOLES,
     Branch,
     Depth,
@@ -116,7 +117,7 @@ class JointsDegForm(Form):
     start: SixDeg = Field(description="six numbers [deg] at the start")
     target: SixDeg = Field(description="six numbers [deg] at the corner")
     end: SixDeg = Field(description="six numbers [deg] at the end")
-    breakpoints: Annotated[list[SixDeg], Field(min_length=3, max_length=10_000, fail_fast=True)] = Field(
+    breakpoints: Annotated[list[SixDeg], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)] = Field(
         description="six numbers [deg] for each entry of standoff_mm"
     )
 

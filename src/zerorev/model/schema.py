@@ -13,6 +13,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 from zerorev.visible import one_line
 
 __all__ = [
+    "MOST_BREAKPOINTS",
     "MOST_HOLES",
     "Angle",
     "Depth",
@@ -42,6 +43,7 @@ __all__ = [
 Entry = TypeVar("Entry")
 
 MOST_HOLES = 100_000
+MOST_BREAKPOINTS = 10_000  # of a motion
 
 
 def _id_text(value: object) -> object:
@@ -57,9 +59,8 @@ def kind(value: object) -> str | None:
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
 Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
 Text = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
-Many = Annotated[
-    list[Entry], Field(fail_fast=True)
-]  # no more is said of a long list than what is wrong with the first bad entry
+# no more is said of a long list than what is wrong with the first bad entry
+Many = Annotated[list[Entry], Field(fail_fast=True)]
 
 # Far beyond any arm, and near enough that no number overflows and no search takes hours.
 Length = Annotated[float, Field(ge=-1e6, le=1e6)]  # [mm]
@@ -76,12 +77,10 @@ Measured = Annotated[float, Field(ge=-1e15, le=1e15)]
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]
 PlaceMm = Annotated[list[Length], Field(min_length=3, max_length=3)]
 AnglesDeg = Annotated[list[Angle], Field(min_length=3, max_length=3)]
-Six = Annotated[list[float], Field(min_length=6, max_length=6)]
 SixDeg = Annotated[list[Angle], Field(min_length=6, max_length=6)]
 SixPositive = Annotated[list[Positive], Field(min_length=6, max_length=6)]
-Breakpoints = Annotated[list[float], Field(min_length=3, max_length=10_000, fail_fast=True)]
-StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=10_000, fail_fast=True)]
-SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=10_000, fail_fast=True)]
+StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
+SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
 SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 Branch = Annotated[int, Field(ge=0, le=7)]
 
