@@ -9,7 +9,7 @@ import numba
 import numpy as np
 import pytest
 
-from oracles.holes import random_hole
+from oracles.holes import ROBOTS, random_hole
 from zerorev import planning
 from zerorev.depth import Deepest, deepest_stroke
 from zerorev.evaluation import evaluate
@@ -20,7 +20,7 @@ from zerorev.model.profile import Profile
 from zerorev.optimum import deepest_as_drilled, optimum
 from zerorev.planning import plan, plan_deepest
 from zerorev.search import exact
-from zerorev.search.cut_short import cut_short, descended
+from zerorev.search.cut_short import cut_short, descended, steadied
 from zerorev.search.rank import Order
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="whole searches")
@@ -182,6 +182,24 @@ class TestCut:
         found = descended(order, cut)
         assert keeps(found, settings)
         assert order.rank(found) < order.rank(cut)
+
+    @pytest.mark.parametrize("flip", [0, 1])
+    @pytest.mark.parametrize("seed", range(1, 1 + len(ROBOTS)))
+    def test_small_steps_lead_on_with_every_robot_and_wrist_flip(self, seed, flip):
+        """On one flip of arms whose joint 5 is counted the other way they once took it to run backwards."""
+        drilled = random_hole(seed).asking(min_rate=0.0)
+        far = np.full(6, 20.0)
+        unlimited = replace(drilled.robot, limits=replace(drilled.robot.limits, lower=-far, upper=far))
+        drilled = replace(drilled, robot=unlimited)
+        deepest = deepest_stroke(*drilled.all)
+        branch = 2 * (deepest.branch // 2) + flip
+        order = Order(*drilled.deep(0.6 * deepest.depth).asking(objective="margin").all)
+        slopes = deepest.profile.twist_rate
+        straight = order.candidate(cut_short(deepest.profile, order.hole.depth), branch)
+        found = steadied(order, branch, float(deepest.profile.psi[1]), slopes, 0.0)
+        assert found.reversals == 0
+        assert found.score.min_rate.min() > straight.score.min_rate.min()
+        assert order.rank(descended(order, straight)) < order.rank(straight)
 
 
 class TestCheck:

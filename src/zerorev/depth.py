@@ -15,7 +15,6 @@ import numpy.typing as npt
 
 from zerorev.evaluation import evaluate
 from zerorev.kernels import legs, pairs
-from zerorev.kernels.arm import twist_field
 from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -27,7 +26,7 @@ from zerorev.model.tool import Tool
 from zerorev.search.free_deepest import deepest_free
 from zerorev.search.problem import Asked
 from zerorev.search.rank import Candidate
-from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of
+from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of, sense_at
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, target_spins
 
 __all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_stroke"]
@@ -246,7 +245,7 @@ class _Search:
 
     def _deepened(self, start: _Start, beaten: float) -> list[_End]:
         """The deepest legs from a start on the branches of its posture; none where they are no deeper than `beaten`."""
-        sense = self._sense(start)
+        sense = sense_at(self.robot.arm, self.plane, start.posture, float(start.legs.psi[0, 0]))
         if sense is None:
             return []
         # limits seldom bind: what is deepest without them is often within them, and nothing is deeper
@@ -270,13 +269,6 @@ class _Search:
                     if lack <= ENOUGH_LACK:
                         ends.append(_End(legs, branch, sense))
         return ends
-
-    def _sense(self, start: _Start) -> Array | None:
-        cs, theta_s, theta_psi = np.empty((6, 2)), np.empty(6), np.empty(6)
-        psi_t = float(start.legs.psi[0, 0])
-        if not twist_field(self.robot.arm, self.plane, 0.0, psi_t, start.posture, cs, theta_s, theta_psi):
-            return None
-        return np.where(theta_psi > 0, 1.0, -1.0)
 
     def _go(
         self, branch: int, sense: Array, rules: Rules, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,

@@ -27,7 +27,7 @@ from zerorev.model.tool import Tool
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
-from zerorev.search.cut_short import cut_short, descended, legs_swapped
+from zerorev.search.cut_short import cut_short, descended, legs_swapped, steadied
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
 from zerorev.search.problem import Problem
@@ -175,6 +175,14 @@ class _Pool:
             return None
         return self.order.candidate(cut_short(found.profile, depth), found.branch)
 
+    def stretched(self) -> Candidate | None:
+        """The greatest margin near the deepest motion, made as deep as the hole."""
+        found, depth = self.deepest, self.hole.depth
+        if found.profile is None or found.branch is None or depth <= found.depth or found.profile.psi.size > 3:
+            return None
+        psi_t = float(found.profile.psi[found.profile.corner])
+        return steadied(self.order, found.branch, psi_t, found.profile.twist_rate, LEAST_RATE)
+
     def given(self) -> list[Candidate]:
         """A given motion on any branch on which it could have been searched for."""
         settings, profile = self.settings, self.profile
@@ -199,6 +207,8 @@ class _Pool:
         best = order.best([straight(self.robot, self.tool, self.hole, self.settings, known), *known])
         if best is not None and best is cut:  # the search has overlooked its valley
             best = descended(order, best)
+        if best is None or best.reversals or not best.keeps_threshold:
+            best = order.best([best, self.stretched()])
         if best is not None and not self.allows(best):
             best = order.best(one for one in self.with_lead_in(best) if self.allows(one))
         return best

@@ -1,16 +1,21 @@
-"""Motions made of a deeper one: cut to a lesser depth, which keeps every direction, and descended from there."""
+"""Motions made of a known one by small steps.
+
+A deeper one is cut to a lesser depth, which keeps every direction; two legs are moved to the greatest margin near them,
+or a motion without a reversal down to the bottom of its valley.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kinematics import joint_rates, twist_plane
+from zerorev.kinematics import twist_plane
+from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Legs, Rules, bettered, motion_of
+from zerorev.search.segments import Goal, Legs, Rules, bettered, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
-__all__ = ["cut_short", "descended", "legs_swapped"]
+__all__ = ["cut_short", "descended", "legs_swapped", "steadied"]
 
 POINTS = 33  # of a leg at which the joints are examined
 ENOUGH_LACK = 1e-6  # [rad/m]
@@ -51,26 +56,47 @@ def descended(order: Order, motion: Candidate) -> Candidate:
     """
     if motion.profile.psi.size > 3:
         return motion
-    robot, settings, branch = order.robot, order.settings, motion.branch
-    plane = twist_plane(robot, order.tool, order.hole)
-    _, theta_psi = joint_rates(robot, order.tool, order.hole, 0.0, motion.psi_target)
-    sense = np.where(theta_psi[branch - branch % 2] > 0, 1.0, -1.0)
-    slopes = np.sort(motion.profile.twist_rate)[::-1]
-    psi = motion.psi_target + motion.depth * slopes[:, None] * np.array([[0.0, 1.0]])
-    legs, limits = Legs(np.array([[0.0, motion.depth]] * 2), psi), robot.limits
-    best = motion
     for guard in GUARDS:
-        rules = Rules(
-            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, max(settings.min_rate, LEAST_RATE) + guard,
-            settings.max_twist if settings.legs == "free" else np.inf, settings.psi_bound or 0.0,
-        )  # fmt: skip
-        lower, lack = bettered(robot.arm, plane, branch, sense, rules, legs, settings.objective, looks=POINTS)
-        found = (
-            order.candidate(motion_of(lower, periodic=settings.psi_bound is None), branch)
-            if lack <= ENOUGH_LACK
-            else None
-        )
+        min_rate = max(order.settings.min_rate, LEAST_RATE) + guard
+        found = _moved(order, motion.branch, motion.psi_target, motion.profile.twist_rate, min_rate, goal=None)
         if found is not None and found.reversals == 0 and found.keeps_threshold:
-            best = min(best, found, key=order.rank)
-            break
-    return best
+            return min(motion, found, key=order.rank)
+    return motion
+
+
+def steadied(order: Order, branch: int, psi_t: float, slopes: Array, min_rate: float) -> Candidate | None:
+    """The motion of the greatest margin near two straight legs, which may break any rule.
+
+    Args:
+        order: of the hole that is drilled.
+        branch: 0..7.
+        psi_t: spin at the target [rad].
+        slopes: twist rates of the legs, in any order [rad/m], shape (2,).
+        min_rate: that the margin has to reach [rad/m].
+
+    Returns:
+        a motion without a reversal, or None where small steps lead to none.
+    """
+    found = _moved(order, branch, psi_t, slopes, min_rate, goal="margin")
+    return found if found is not None and found.reversals == 0 else None
+
+
+def _moved(
+    order: Order, branch: int, psi_t: float, slopes: Array, min_rate: float, goal: Goal | None
+) -> Candidate | None:
+    """Two straight legs, improved by small steps; the goal is that of the settings, where none is given."""
+    robot, settings, depth = order.robot, order.settings, order.hole.depth
+    plane = twist_plane(robot, order.tool, order.hole)
+    sense = sense_at(robot.arm, plane, branch // 2, psi_t)
+    if sense is None:
+        return None
+    psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
+    legs, limits = Legs(np.array([[0.0, depth]] * 2), psi), robot.limits
+    rules = Rules(
+        limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, min_rate,
+        settings.max_twist if settings.legs == "free" else np.inf, settings.psi_bound or 0.0,
+    )  # fmt: skip
+    moved, lack = bettered(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, looks=POINTS)
+    if lack > ENOUGH_LACK:
+        return None
+    return order.candidate(motion_of(moved, periodic=settings.psi_bound is None), branch)

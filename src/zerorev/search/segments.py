@@ -9,13 +9,14 @@ import numpy as np
 
 from zerorev.kernels import segments as kernels
 from zerorev.kernels import slp
+from zerorev.kernels.arm import twist_field
 from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
 from zerorev.search.straight import LONGEST_TWIST
 
-__all__ = ["Goal", "Legs", "Rules", "bettered", "breakpoints_of", "legs_through", "motion_of"]
+__all__ = ["Goal", "Legs", "Rules", "bettered", "breakpoints_of", "legs_through", "motion_of", "sense_at"]
 
 Goal = Literal["depth", "travel", "margin", "plunge_rotation"]
 GOALS: dict[Goal, int] = {
@@ -136,6 +137,26 @@ def bettered(
     shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, looks))
     lack = slp.better(arm, plane, branch, sense, rules, GOALS[goal], shares, steps, enough, weighed, standoff, psi)
     return Legs(standoff, psi), float(lack)
+
+
+def sense_at(arm: ArmGeometry, plane: TwistPlane, posture: int, psi_t: float) -> Array | None:
+    """Signs of the outward rates of the first leg, out of a spin at the target; None where it is out of reach.
+
+    Where no joint reverses, they are those of d theta / d psi: the first leg has the greater slope (theory §2).
+
+    Args:
+        arm: of the robot.
+        plane: of the hole.
+        posture: 0..3.
+        psi_t: spin at the target [rad].
+
+    Returns:
+        on the unflipped wrist, shape (6,).
+    """
+    cs, theta_s, theta_psi = np.empty((6, 2)), np.empty(6), np.empty(6)
+    if not twist_field(arm, plane, 0.0, psi_t, posture, cs, theta_s, theta_psi):
+        return None
+    return np.where(theta_psi > 0, 1.0, -1.0)
 
 
 def breakpoints_of(standoff: Array, psi: Array, count: int) -> Array:

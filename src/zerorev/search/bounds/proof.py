@@ -14,7 +14,6 @@ from itertools import product
 import numpy as np
 
 from zerorev.kernels import bound_nodes, bound_tree
-from zerorev.kinematics import joint_rates
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Optimality
 from zerorev.model.proof_tree import ProofTree
@@ -22,11 +21,10 @@ from zerorev.motion import outward_rates
 from zerorev.search.bounds.log import logged_tree
 from zerorev.search.bounds.tree import Rules as BoundRules
 from zerorev.search.bounds.tree import Search, model_limits
-from zerorev.search.cut_short import descended
+from zerorev.search.cut_short import descended, steadied
 from zerorev.search.problem import Problem
 from zerorev.search.rank import SAME_COST, Candidate
-from zerorev.search.segments import Legs, Rules, bettered
-from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
+from zerorev.search.straight import LEAST_RATE
 
 __all__ = ["MOST_REVERSALS", "Proof", "Prover", "prove"]
 
@@ -39,8 +37,6 @@ TURNS_OF_LEG = 257  # points at which a motion that failed is examined
 MOST_FRESH_CUTS = 8
 SHORT = 0.03  # of the arm's size: on shorter strokes joints hardly change their rates
 LOOKS = 4, 8  # at a box at first
-SLIDING_LOOKS = 33  # points of a leg
-ENOUGH_LACK = 1e-6  # [rad/m]
 MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
 
 
@@ -278,25 +274,10 @@ class Prover:
 
     def _slid(self, branches: list[int], psi: float, slopes: list[float]) -> Candidate | None:
         """A motion without a reversal to which the margin of two legs leads, descended; None where it leads to none."""
-        problem, depth, found = self.problem, self.problem.hole.depth, []
-        arm, limits = problem.robot.arm, problem.robot.limits
-        _, theta_psi = joint_rates(problem.robot, problem.tool, problem.hole, 0.0, psi)
-        first, second = max(slopes), min(slopes)
-        legs = Legs(np.array([[0.0, depth]] * 2), np.array([[psi, psi + first * depth], [psi, psi + second * depth]]))
-        rate = max(problem.settings.min_rate, LEAST_RATE)
-        rules = Rules(
-            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, rate, psi_bound=problem.settings.psi_bound or 0.0
-        )
-        for branch in branches:
-            sense = np.where(theta_psi[branch - branch % 2] > 0, 1.0, -1.0)
-            slid, lack = bettered(arm, problem.plane, branch, sense, rules, legs, "margin", looks=SLIDING_LOOKS)
-            if lack <= ENOUGH_LACK:
-                ends = slid.psi[:, 1] - slid.psi[:, 0]
-                found.append(problem.found(branch, float(slid.psi[0, 0]), (ends[0] / depth, ends[1] / depth)))
-        best = problem.order.best(found)
-        if best is None or best.reversals or not best.keeps_threshold:
-            return None
-        return descended(problem.order, best)
+        order = self.problem.order
+        rate = max(self.problem.settings.min_rate, LEAST_RATE)
+        best = order.best(steadied(order, branch, psi, np.array(slopes), rate) for branch in branches)
+        return descended(order, best) if best is not None and best.keeps_threshold else None
 
     def _worst_places(self, posture: int, psi: float, slopes: list[float]) -> Array:
         """Where on its legs a motion fails what it is asked, as shares of the depth."""
