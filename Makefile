@@ -41,7 +41,7 @@ bench: $(VENV)/.bench  ## zerorev and its peers at the same work; a part or less
 	$(BIN)/python -m benchmarks.run $(BENCH)
 
 schemas: $(READY)  ## rewrite the published JSON Schemas of job and plan files
-	$(BIN)/python -c "from zerorev.model.files import write_schemas; write_schemas('docs/schemas')"
+	$(BIN)/python -c "from zerorev.files.io import write_schemas; write_schemas('docs/schemas')"
 
 $(READY): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import yaml
 
-from zerorev.model.map_file import read_map_file
+from zerorev.files.map_file import read_map_file
 from zerorev.model.map_task import MapTask
 
 __all__ = ["GREAT_MAP", "content", "thinned", "write_map_file"]

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 import zerorev as zr
-from zerorev import kinematics
+from zerorev.motion import kinematics
 from zerorev.search.exact import search
-from zerorev.verify.certificate import certify_hole
+from zerorev.verify.certificate.certify import certify_hole
 
 __all__ = [
     "NO_THRESHOLD",

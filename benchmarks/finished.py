@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from zerorev.model.output import write_text
+from zerorev.files.output import write_text
 
 __all__ = ["Finished"]
 

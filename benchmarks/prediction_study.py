@@ -21,15 +21,15 @@ from matplotlib.lines import Line2D
 from scipy.stats import spearmanr
 
 from benchmarks.cases import NO_THRESHOLD, Case, random_place
-from zerorev.depth import deepest_stroke
+from zerorev.files.output import write_bytes, write_text
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import flip_sign, twist_field
-from zerorev.kinematics import inverse, tcp_pose, twist_plane
 from zerorev.model._arrays import Array
-from zerorev.model.output import write_bytes, write_text
-from zerorev.prediction import earlier_root, first_order_root, predict, second_order_root
+from zerorev.motion.kinematics import inverse, tcp_pose, twist_plane
 from zerorev.report.figures import style
+from zerorev.search.deepest import deepest_stroke
 from zerorev.search.line import golden
+from zerorev.search.prediction import earlier_root, first_order_root, predict, second_order_root
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
 
 ROOT = Path(__file__).parents[1]

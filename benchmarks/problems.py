@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 import zerorev as zr
-from zerorev import kinematics
+from zerorev.files.io import robot_names
 from zerorev.model._arrays import Array, rotation_rpy, transform
-from zerorev.model.files import robot_names
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion import kinematics
 from zerorev.search.problem import Problem
 
 __all__ = ["HOSTILE", "hostile_problem", "random_problem"]

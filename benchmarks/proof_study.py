@@ -18,9 +18,9 @@ import numpy as np
 
 import zerorev as zr
 from benchmarks.problems import hostile_problem, random_problem
-from zerorev.optimum import deepest_as_drilled
 from zerorev.search.bounds.proof import prove
 from zerorev.search.exact import search
+from zerorev.search.optimum import deepest_as_drilled
 
 FIRST_SEED, FIRST_HOSTILE, FIRST_ALONE = 8_000, 20_000, 30_000
 BUDGETS = (100_000, 1_000_000)  # boxes: the default, and some 10 s

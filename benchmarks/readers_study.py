@@ -22,18 +22,18 @@ from typing import Any
 import numpy as np
 
 import zerorev as zr
-from zerorev.model.files import plan_to_json, read_plan
-from zerorev.model.map_file import read_map_file
-from zerorev.model.schema import MOST_HOLES
-from zerorev.model.sheet import MAX_ROWS as MOST_PASTED
-from zerorev.model.sheet import sheet_rows
-from zerorev.model.text import MAX_BYTES, MAX_ROWS
-from zerorev.model.text import MAX_VALUES as JSON_VALUES
-from zerorev.model.yaml_text import MAX_VALUES
+from zerorev.files.io import plan_to_json, read_plan
+from zerorev.files.map_file import read_map_file
+from zerorev.files.schema import MOST_HOLES
+from zerorev.files.sheet import MAX_ROWS as MOST_PASTED
+from zerorev.files.sheet import sheet_rows
+from zerorev.files.text import MAX_BYTES, MAX_ROWS
+from zerorev.files.text import MAX_VALUES as JSON_VALUES
+from zerorev.files.urdf import MOST_PARTS, read_urdf
+from zerorev.files.yaml_text import MAX_VALUES
 from zerorev.program.export import export
-from zerorev.program.read_back import MOST_BYTES, read_program
-from zerorev.report.urdf import MOST_PARTS, read_urdf
-from zerorev.report.urdf_meshes import MOST_MESH, _loaded
+from zerorev.program.krl.read import MOST_BYTES, read_program
+from zerorev.report.scene.urdf_meshes import MOST_MESH, _loaded
 
 HEAD = "robot: kuka_kr6_r700_2\ntool: thesis_drill\n"
 VALUES_OF_A_HOLE = 12

@@ -32,7 +32,7 @@ from benchmarks.parts import (
     tolerance,
 )
 from benchmarks.table import Section, load, page, save
-from zerorev.model.output import write_text
+from zerorev.files.output import write_text
 
 PARTS: dict[str, Callable[[Options], Section]] = {
     "field": field.run,

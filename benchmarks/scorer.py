@@ -1,7 +1,7 @@
 """One independent scorer for every answer of every method: the whole motion at N = 40,001 samples, in plain NumPy.
 
 A joint has turned round where it has backed up from its farthest point by more than the arithmetic can err. What lies
-between two samples is not seen; `zerorev.evaluation.evaluate` locates that, and is asked where the two disagree.
+between two samples is not seen; `zerorev.motion.evaluation.evaluate` locates that, and is asked where the two disagree.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import numpy as np
 
 from benchmarks.arm_numpy import inverse, wrapped
 from benchmarks.cases import Answer, Case
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import tcp_pose
 from zerorev.model._arrays import Array
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import tcp_pose
 
 __all__ = ["SAMPLES", "Rescored", "Verdict", "compare", "located_reversals", "rescore", "turning_points", "words"]
 

@@ -80,8 +80,8 @@ def environment(checkout: Path) -> dict[str, str]:
 def _serve() -> None:
     """Answer jobs, one a line, until there are no more."""
     import zerorev
-    from zerorev.model.files import job_from_dict
-    from zerorev.model.schema import JobFile
+    from zerorev.files.io import job_from_dict
+    from zerorev.files.schema import JobFile
 
     for line in sys.stdin:
         asked = {key: value for key, value in json.loads(line).items() if key in JobFile.model_fields}

@@ -10,7 +10,7 @@ from string import Template
 
 import numpy as np
 
-from zerorev.model.output import write_text
+from zerorev.files.output import write_text
 
 __all__ = ["Goal", "Section", "load", "page", "save"]
 

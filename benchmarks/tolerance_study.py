@@ -20,10 +20,10 @@ from scipy.stats import spearmanr
 
 import zerorev as zr
 from benchmarks.cases import NO_THRESHOLD, certified
+from zerorev.files.output import write_bytes, write_text
 from zerorev.model._arrays import Array
-from zerorev.model.output import write_bytes, write_text
 from zerorev.report.figures import style
-from zerorev.verify.certificate_within import largest_within
+from zerorev.verify.certificate.within import largest_within
 
 ROOT = Path(__file__).parents[1]
 WAYS = {

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import psutil
 
-from zerorev.model.output import write_text
+from zerorev.files.output import write_text
 
 __all__ = ["Cost", "watched"]
 

@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 import zerorev as zr
-from zerorev.model.moved_job import write_job
+from zerorev.files.moved_job import write_job
 from zerorev.placement.freedom import Freedom, frame_at
 from zerorev.placement.search import place
 

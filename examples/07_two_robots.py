@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 import zerorev as zr
-from zerorev.sharing import share
+from zerorev.placement.sharing import share
 
 folder = Path(__file__).parent / "jobs" / "two_robots"
 jobs = [zr.read_job(folder / f"{name}.yaml") for name in ("left", "right")]  # the same holes.csv, seen from two places

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 from oracles.published import POSITIONS, Position
-from zerorev.model.files import read_robot, read_tool, robot_names
+from zerorev.files.io import read_robot, read_tool, robot_names
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # started in the background: what tests start would inherit it
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -37,7 +37,7 @@ def checked_files(tmp_path_factory):
     """The folder in which it is kept which plan files were checked: never the user's own."""
     folder = tmp_path_factory.mktemp("cache") / "checked"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("zerorev.model.checked_files._folder", lambda: folder)
+        patch.setattr("zerorev.files.checked_files._folder", lambda: folder)
         yield folder
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import zerorev
+from oracles.places import ROOT
 
-ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("[0-9]*.py"))
 JOBS = sorted((ROOT / "examples" / "jobs").glob("*.yaml"))
 

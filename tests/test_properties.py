@@ -10,14 +10,14 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from oracles import arm as twin
-from zerorev import kinematics
-from zerorev.evaluation import evaluate
-from zerorev.model.files import read_robot, read_tool, robot_names
+from zerorev.files.io import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
-from zerorev.motion import joints_along, sample_distances
+from zerorev.motion import kinematics
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.joint_path import joints_along, sample_distances
 
 TOOL = read_tool("thesis_drill")
 ROBOTS = {name: read_robot(name) for name in robot_names()}

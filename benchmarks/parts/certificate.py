@@ -12,9 +12,9 @@ from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
 from zerorev.model.plan import Certificate
 from zerorev.program.as_exported import as_exported
-from zerorev.program.read_back import read_krl
-from zerorev.verify.certificate import certify_hole
-from zerorev.verify.certificate_program import certify_program_hole
+from zerorev.program.krl.read import read_krl
+from zerorev.verify.certificate.certify import certify_hole
+from zerorev.verify.certificate.program import certify_program_hole
 
 __all__ = ["run"]
 

@@ -13,7 +13,7 @@ from benchmarks.parts import Options
 from benchmarks.scorer import SAMPLES, rescore
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev.depth import Deepest
+from zerorev.search.deepest import Deepest
 
 __all__ = ["run"]
 

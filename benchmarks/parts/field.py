@@ -14,10 +14,10 @@ from benchmarks.peers.eaik_arm import Eaik
 from benchmarks.peers.opw import Opw
 from benchmarks.table import Goal, Section
 from benchmarks.timing import in_turns
-from zerorev import kinematics
 from zerorev.kernels import field
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
+from zerorev.motion import kinematics
 
 __all__ = ["apart", "run"]
 

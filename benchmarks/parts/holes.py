@@ -26,8 +26,8 @@ from benchmarks.peers.objective import NumbaObjective, graded
 from benchmarks.peers.swarm import ITERATIONS, PARTICLES, swarm
 from benchmarks.scorer import SAMPLES, Rescored, compare, rescore, words
 from benchmarks.table import Section
-from zerorev.jobs import workers_for
-from zerorev.search.methods import BUDGET
+from zerorev.planning.job import workers_for
+from zerorev.thesis.methods import BUDGET
 from zerorev.workers import Workers
 
 __all__ = ["run"]

@@ -17,11 +17,11 @@ from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration
 from benchmarks.watched import Cost, watched
+from zerorev.files.map_file import read_map_file
 from zerorev.maps.cells import STATUS
 from zerorev.maps.run import local, run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model._arrays import Array
-from zerorev.model.map_file import read_map_file
 
 __all__ = ["run"]
 

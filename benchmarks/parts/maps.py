@@ -14,13 +14,13 @@ from benchmarks.box import content
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import Timed, duration, in_turns
+from zerorev.files.map_file import read_map_file
 from zerorev.maps.run import local, run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model._arrays import Array
-from zerorev.model.map_file import read_map_file
 from zerorev.model.map_task import MapTask
-from zerorev.report.reproduce.published import TABLE_5, TABLE_5_Y_MM, TABLE_5_Z_MM
-from zerorev.report.reproduce.workspace import PLANES_MM, SPACING_MM
+from zerorev.thesis.reproduce.published import TABLE_5, TABLE_5_Y_MM, TABLE_5_Z_MM
+from zerorev.thesis.reproduce.workspace import PLANES_MM, SPACING_MM
 
 __all__ = ["run"]
 

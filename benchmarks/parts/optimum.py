@@ -80,7 +80,7 @@ def run(options: Options) -> Section:
             " branches, psi within ±180°, the motion threshold off. The swarms have the thesis' settings (100"
             " particles, 50 iterations), the others as many motions to look at, or stop of their own accord.",
             "*Zero*: share of the seeds with zero reversals, as the method itself counts them, as rescored at N ="
-            f" {SAMPLES:,}, and as `zerorev.evaluation.evaluate` locates them between the samples; travel is of the"
+            f" {SAMPLES:,}, and as `zerorev.evaluate` locates them between the samples; travel is of the"
             " last. The gap between the counts is reversals within the first step next to the target: samples overlook"
             " them, and least travel leads to them.",
             "*Crowded*: as many samples, but crowded at the ends of the legs, so that little is overlooked. *From"

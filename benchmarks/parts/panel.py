@@ -13,7 +13,7 @@ from benchmarks.states import NEW, OLD, ROOT, environment
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration
 from benchmarks.watched import Cost, watched
-from zerorev.model.schema import JobFile
+from zerorev.files.schema import JobFile
 
 __all__ = ["run"]
 

@@ -11,8 +11,8 @@ from benchmarks.cases import Case, positions
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev.maps.parameter_map import parameter_map, spin_axis
-from zerorev.search.sampled import SampledObjective, Weighing
+from zerorev.thesis.parameter_map import parameter_map, spin_axis
+from zerorev.thesis.sampled import SampledObjective, Weighing
 
 __all__ = ["run"]
 

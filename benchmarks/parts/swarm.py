@@ -12,8 +12,8 @@ from benchmarks.cases import Case, positions
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev.search.sampled import SAMPLES, SampledObjective
-from zerorev.search.swarm import TABLE_4, SwarmResult, run_swarm
+from zerorev.thesis.sampled import SAMPLES, SampledObjective
+from zerorev.thesis.swarm import TABLE_4, SwarmResult, run_swarm
 
 __all__ = ["run"]
 

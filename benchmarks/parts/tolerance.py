@@ -14,8 +14,8 @@ from benchmarks.cases import certified_holes
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
-from zerorev.verify.certificate import certify_hole
-from zerorev.verify.certificate_within import Tolerance, largest_within
+from zerorev.verify.certificate.certify import certify_hole
+from zerorev.verify.certificate.within import Tolerance, largest_within
 
 __all__ = ["run"]
 

@@ -9,9 +9,9 @@ import numpy as np
 from benchmarks.cases import Answer
 from benchmarks.peers.objective import Objective
 from benchmarks.peers.swarm import BOUND
-from zerorev.search.methods import BUDGET
-from zerorev.search.scipy_methods import differential_evolution
-from zerorev.search.trial import Trial
+from zerorev.thesis.methods import BUDGET
+from zerorev.thesis.scipy_methods import differential_evolution
+from zerorev.thesis.trial import Trial
 
 __all__ = ["attack", "evolution"]
 

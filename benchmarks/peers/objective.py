@@ -12,10 +12,10 @@ import numpy as np
 
 from benchmarks.arm_numpy import inverse, wrapped
 from benchmarks.cases import Answer, Case
-from zerorev.kinematics import tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
-from zerorev.search.sampled import SAMPLES, Judged, SampledObjective, crowded_fractions, even_fractions
+from zerorev.motion.kinematics import tcp_pose
+from zerorev.thesis.sampled import SAMPLES, Judged, SampledObjective, crowded_fractions, even_fractions
 
 __all__ = ["NumbaObjective", "NumpyObjective", "Objective", "graded"]
 

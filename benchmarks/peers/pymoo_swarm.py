@@ -7,9 +7,9 @@ import numpy as np
 from benchmarks.cases import Answer
 from benchmarks.peers.objective import Objective
 from benchmarks.peers.swarm import BOUND
-from zerorev.search.methods import BUDGET
-from zerorev.search.population_methods import pymoo_pso
-from zerorev.search.trial import Trial
+from zerorev.thesis.methods import BUDGET
+from zerorev.thesis.population_methods import pymoo_pso
+from zerorev.thesis.trial import Trial
 
 __all__ = ["pymoo_swarm"]
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from benchmarks.cases import Answer
 from benchmarks.peers.objective import Objective
-from zerorev.search.swarm import TABLE_4, run_swarm
+from zerorev.thesis.swarm import TABLE_4, run_swarm
 
 __all__ = ["BOUND", "ITERATIONS", "PARTICLES", "swarm"]
 

@@ -10,20 +10,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from zerorev.depth import Deepest, deepest_stroke
     from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
-    from zerorev.evaluation import evaluate
-    from zerorev.jobs import plan_job
-    from zerorev.model.files import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
+    from zerorev.files.io import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
     from zerorev.model.hole import Hole
     from zerorev.model.job import Job, Settings
     from zerorev.model.plan import Finding, HolePlan, Plan, Score
     from zerorev.model.profile import Profile
     from zerorev.model.robot import ArmGeometry, JointLimits, Robot
     from zerorev.model.tool import Tool
-    from zerorev.planning import plan, plan_deepest
+    from zerorev.motion.evaluation import evaluate
+    from zerorev.planning.hole import plan, plan_deepest
+    from zerorev.planning.job import plan_job
+    from zerorev.planning.restated import check_plan
     from zerorev.program.export import export
-    from zerorev.restated import check_plan
+    from zerorev.search.deepest import Deepest, deepest_stroke
     from zerorev.verify.check import verify_plan
 
 __all__ = [
@@ -62,11 +62,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    "depth": ("Deepest", "deepest_stroke"),
     "errors": ("InputError", "NotExportableError", "OutputError", "ZerorevError"),
-    "evaluation": ("evaluate",),
-    "jobs": ("plan_job",),
-    "model.files": (
+    "files.io": (
         "read_job", "read_plan", "read_robot", "read_tool", "robot_names", "tool_names", "write_plan",
     ),
     "model.hole": ("Hole",),
@@ -75,9 +72,12 @@ _HOMES = {
     "model.profile": ("Profile",),
     "model.robot": ("ArmGeometry", "JointLimits", "Robot"),
     "model.tool": ("Tool",),
-    "planning": ("plan", "plan_deepest"),
+    "motion.evaluation": ("evaluate",),
+    "planning.hole": ("plan", "plan_deepest"),
+    "planning.job": ("plan_job",),
+    "planning.restated": ("check_plan",),
     "program.export": ("export",),
-    "restated": ("check_plan",),
+    "search.deepest": ("Deepest", "deepest_stroke"),
     "verify.check": ("verify_plan",),
 }  # fmt: skip
 

@@ -8,10 +8,10 @@ import py_opw_kinematics as opw
 import pytest
 
 from oracles import arm as twin
-from zerorev import kinematics
 from zerorev.kernels.arm import WRIST_SINGULAR, other_flip
 from zerorev.model.hole import Hole
 from zerorev.model.tool import Tool
+from zerorev.motion import kinematics
 
 POSES = 1_000 if numba.config.DISABLE_JIT else 10_000
 FEW = 100

@@ -7,9 +7,9 @@ import pytest
 from benchmarks.cases import NO_THRESHOLD, drilled, random_place
 
 from oracles.starts import SLOW
-from zerorev.evaluation import evaluate
 from zerorev.kernels import compass, fan, legs
 from zerorev.model.profile import Profile
+from zerorev.motion.evaluation import evaluate
 from zerorev.search.problem import Problem
 
 # random hole 1159: `refine` stops at these spins [deg] on branch 3, at an edge; 5 reversals are the fewest there

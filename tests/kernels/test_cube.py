@@ -7,8 +7,8 @@ import pytest
 
 from oracles import sampled as twin
 from oracles.starts import SLOW, TOOL, starts
-from zerorev import kinematics
 from zerorev.kernels.cube import cube
+from zerorev.motion import kinematics
 
 UNEVEN = np.array([0.0, 0.03, 0.1, 0.3, 0.35, 0.6, 0.97, 1.0])
 RATE = np.deg2rad(200.0)  # [rad/m] a motion threshold that some joints keep and some do not

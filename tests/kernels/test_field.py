@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from oracles.starts import ROBOTS, SLOW, TOOL, starts
-from zerorev import kinematics
 from zerorev.kernels import arm as one_by_one
 from zerorev.kernels import field
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 
 BY_NAME = pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 

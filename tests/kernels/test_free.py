@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from oracles import free as twin
-from zerorev import kinematics
 from zerorev.kernels import field, free, segments, tube
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 from zerorev.search.viable import Grain, Held
 
 SLOW = bool(numba.config.DISABLE_JIT)

@@ -7,9 +7,9 @@ import pytest
 
 from oracles.motion import dense
 from oracles.starts import SLOW, TOOL, starts
-from zerorev import kinematics
 from zerorev.kernels import motion as kernels
 from zerorev.model.profile import Profile
+from zerorev.motion import kinematics
 
 JUMP = 0.5
 DENSE = 300 if SLOW else 4000

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from oracles import holes
-from zerorev import kinematics
 from zerorev.kernels import outer_cells, outer_sets
 from zerorev.kernels.intervals import LANES
-from zerorev.motion import joints_along
+from zerorev.motion import kinematics
+from zerorev.motion.joint_path import joints_along
 from zerorev.search.bounds.cells import cell_formulas
 from zerorev.search.bounds.free_legs import Grid, Rules
 from zerorev.search.bounds.tree import model_limits

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from oracles import free as twin
-from zerorev import kinematics
 from zerorev.kernels import polyline, reach, viable
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 from zerorev.search.viable import Grain, Held, Tubes
 
 SLOW = bool(numba.config.DISABLE_JIT)

@@ -9,9 +9,9 @@ import pytest
 
 from oracles import sampled as twin
 from oracles.starts import SLOW, TOOL, starts
-from zerorev import kinematics
 from zerorev.kernels.sampled import judge
 from zerorev.model.robot import JointLimits
+from zerorev.motion import kinematics
 
 CROWDED = np.array([0.0, 1e-4, 0.03, 0.1, 0.3, 0.35, 0.6, 0.97, 1.0])
 EVEN = np.linspace(0.0, 1.0, 9)

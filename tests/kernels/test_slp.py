@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numba import config
 
-from zerorev import kinematics
 from zerorev.kernels import segments
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 from zerorev.search.segments import GOALS, Legs, Rules, bettered
 
 SLOW = config.DISABLE_JIT

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from oracles.starts import ALL_JOINTS, SLOW, TOOL, Start, asked, starts
-from zerorev import kinematics
 from zerorev.kernels import field, legs, weigh
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 
 NOWHERE = np.zeros(6)  # joints at the target, where no limit is looked at
 

@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zerorev.critical import critical_at
-from zerorev.depth import deepest_stroke
 from zerorev.errors import InputError
-from zerorev.jobs import plan_job
-from zerorev.kinematics import inverse, tcp_pose
 from zerorev.maps.cells import STATUS, answer, columns_of
 from zerorev.maps.replan import hole_of, job_of, question_of
 from zerorev.maps.run import local, run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model.job import Settings
 from zerorev.model.map_task import MapTask, Question, cone
-from zerorev.planning import plan
-from zerorev.verify.certificate import certify_hole
+from zerorev.motion.critical import critical_at
+from zerorev.motion.kinematics import inverse, tcp_pose
+from zerorev.planning.hole import plan
+from zerorev.planning.job import plan_job
+from zerorev.search.deepest import deepest_stroke
+from zerorev.verify.certificate.certify import certify_hole
 
 FREE = Settings(min_rate=0.0)
 AXES = (np.array([450.0, 500.0]), np.array([0.0, 300.0]), np.array([700.0, 800.0]))

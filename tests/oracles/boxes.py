@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.motion import joints_along, outward_rates
+from zerorev.motion.joint_path import joints_along, outward_rates
 
 __all__ = ["POINTS", "leg"]
 

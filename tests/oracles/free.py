@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev import kinematics
+from zerorev.motion import kinematics
 
 
 def rates_at(robot, tool, hole, branch, standoff, psi):

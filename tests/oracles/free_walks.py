@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev import kinematics
-from zerorev.motion import joints_along
+from zerorev.motion import kinematics
+from zerorev.motion.joint_path import joints_along
 
 __all__ = ["deepest_of_walks", "walked"]
 

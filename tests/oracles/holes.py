@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from zerorev import kinematics
+from zerorev.files.io import read_robot, read_tool, robot_names
 from zerorev.model._arrays import rotation_rpy, transform
-from zerorev.model.files import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion import kinematics
 
 __all__ = ["Drilled", "hostile_hole", "random_hole"]
 

@@ -10,8 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from zerorev import kinematics
 from zerorev.kernels import legs as kernels
+from zerorev.motion import kinematics
 
 DENSE = 2001
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
-from zerorev.model.conversion import robot_data, settings_data, tool_data
+from zerorev.files.conversion import robot_data, settings_data, tool_data
 from zerorev.model.job import Settings
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from oracles import arm as twin
-from zerorev import kinematics
+from zerorev.motion import kinematics
 
 __all__ = ["Dense", "dense"]
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from zerorev.evaluation import evaluate
 from zerorev.model.hole import Hole
+from zerorev.motion.evaluation import evaluate
 from zerorev.verify.arm import posture_of
 from zerorev.verify.measure import reversals
 from zerorev.verify.path import Track, blend, follow

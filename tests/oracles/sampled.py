@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev import kinematics
+from zerorev.motion import kinematics
 
 FULL = 2 * np.pi
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from zerorev import kinematics
-from zerorev.evaluation import evaluate
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
+from zerorev.motion import kinematics
+from zerorev.motion.evaluation import evaluate
 
 FULL_TURN = 2 * np.pi
 NIL = np.deg2rad(1e-6)  # [rad/m]

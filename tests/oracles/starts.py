@@ -8,10 +8,10 @@ import numba
 import numpy as np
 
 from oracles import legs as twin
-from zerorev import kinematics
+from zerorev.files.io import read_robot, read_tool, robot_names
 from zerorev.kernels import field, leg_search, legs
-from zerorev.model.files import read_robot, read_tool, robot_names
 from zerorev.model.hole import Hole
+from zerorev.motion import kinematics
 from zerorev.search.problem import Asked
 
 ROBOTS = [read_robot(name) for name in robot_names()]

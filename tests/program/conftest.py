@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from oracles import krl_reader
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import inverse, tcp_pose, wrist_offset
-from zerorev.model.files import read_robot, read_tool
+from zerorev.files.io import read_robot, read_tool
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Verification
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import inverse, tcp_pose, wrist_offset
 
 # thesis Appendix B with theory §6 and §7: target [mm], stroke [mm], spins [deg], axis values at the start [deg]
 PUBLISHED = {

@@ -14,11 +14,11 @@ import zerorev as zr
 import zerorev.program.export as export_module
 from zerorev import cli
 from zerorev.cli import main
-from zerorev.jobs import unanswered
-from zerorev.model import checked_files
-from zerorev.model.files import job_from_dict, plan_to_json, write_plan
-from zerorev.model.part import Part
-from zerorev.model.text import json_text
+from zerorev.files import checked_files
+from zerorev.files.io import job_from_dict, plan_to_json, write_plan
+from zerorev.files.part import Part
+from zerorev.files.text import json_text
+from zerorev.planning.job import unanswered
 from zerorev.verify.check import verify_hole
 
 HOLES = [

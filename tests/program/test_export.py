@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from zerorev.errors import InputError, NotExportableError
-from zerorev.model.files import read_robot
+from zerorev.files.io import read_robot
 from zerorev.model.plan import Finding
 from zerorev.program.export import CONTROLLERS, export
-from zerorev.program.krl import to_krl
+from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import build_program
 
 PARTS = {

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from zerorev.kinematics import forward, tcp_pose
-from zerorev.lead_in import KEPT, find_lead_in
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.motion import joints_along
+from zerorev.motion.joint_path import joints_along
+from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.export import export
+from zerorev.program.lead_in import KEPT, find_lead_in
 
 
 def along(plan, hole, back):

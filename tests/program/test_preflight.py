@@ -8,12 +8,12 @@ import pytest
 from zerorev.errors import NotExportableError
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.motion import joints_along
+from zerorev.motion.joint_path import joints_along
 from zerorev.program.export import export
+from zerorev.program.krl.read import read_krl
 from zerorev.program.neutral import build_program
 from zerorev.program.notes import corner_depth
 from zerorev.program.preflight import preflight
-from zerorev.program.read_back import read_krl
 
 
 def findings(plan, kind):

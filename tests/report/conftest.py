@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import wrist_offset
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Baseline, HolePlan, Plan
 from zerorev.model.profile import Profile
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import wrist_offset
 
 
 def answer(robot, tool, hole, profile, branch):

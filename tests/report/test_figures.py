@@ -14,18 +14,18 @@ from PIL import Image
 
 from oracles.published import POSITIONS
 from zerorev.errors import InputError, OutputError
-from zerorev.kinematics import critical_rates as kappa
-from zerorev.model.files import read_robot
+from zerorev.files.io import read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Plan
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
+from zerorev.motion.kinematics import critical_rates as kappa
 from zerorev.report import figures
-from zerorev.report.bracket import broken_at_poles
 from zerorev.report.figures import FIGURES, critical_rates, file_stems, joint_angles, twist_plane, write_figures
 from zerorev.report.figures.plane import SLATE
 from zerorev.report.figures.style import JOINT_COLOURS, png, signed, spread_out
+from zerorev.report.scene.bracket import broken_at_poles
 
 
 def texts(figure):
@@ -308,8 +308,8 @@ class TestHelpers:
 
 
 def _evaluated(robot, tool, hole, profile, branch):
-    from zerorev.evaluation import evaluate
     from zerorev.model.plan import HolePlan
+    from zerorev.motion.evaluation import evaluate
 
     found = evaluate(robot, tool, hole, profile, branch)
     return HolePlan(hole, "evaluated", 0.1, found.motion, found.score) if found.score else None

@@ -3,26 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import zerorev as zr
 from oracles import boxes, holes
-from zerorev import kinematics
+from oracles.places import CASES
+from zerorev.files.io import read_job
 from zerorev.kernels import bound_boxes as kernels
 from zerorev.kernels import bound_legs, bound_nodes, bound_tree
 from zerorev.kernels.bound_multipliers import LEG, MOST_TERMS, TERM
 from zerorev.kernels.intervals import DERIVATIVE, LANES
-from zerorev.model.files import read_job
+from zerorev.motion import kinematics
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.bounds.tree import Rules, Search, _room, model_limits
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
 
-CASES = Path(__file__).parents[1] / "data" / "exactness"
 BUDGET = 100_000
 THESIS = (([0.5, 0.3, 0.8], 0.05), ([0.2, 0.4, 0.6], 0.02), ([0.2, 0.2, 1.0], 0.03))
 

@@ -10,16 +10,16 @@ from benchmarks.cases import drilled, mirrored, random_place
 from scipy.optimize import minimize
 
 from oracles import search as twin
-from zerorev import kinematics
-from zerorev.evaluation import evaluate
-from zerorev.model.files import read_robot, robot_names
+from zerorev.files.io import read_robot, robot_names
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
-from zerorev.motion import joints_along
+from zerorev.motion import kinematics
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.joint_path import joints_along
 from zerorev.search.exact import can_run, search
 from zerorev.search.problem import Problem
 from zerorev.search.straight import LEAST_RATE

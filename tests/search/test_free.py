@@ -8,20 +8,20 @@ import numba
 import numpy as np
 import pytest
 
-from zerorev import kinematics
-from zerorev.depth import deepest_stroke
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import wrist_offset
-from zerorev.model.files import read_robot
+from zerorev.files.io import read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.tool import Tool
-from zerorev.optimum import best_motion
+from zerorev.motion import kinematics
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import wrist_offset
+from zerorev.search.deepest import deepest_stroke
 from zerorev.search.free import search_free
 from zerorev.search.free_deepest import SEGMENTS, deepest_free
+from zerorev.search.optimum import best_motion
 from zerorev.verify import verify_hole
-from zerorev.verify.certificate import certify_hole
+from zerorev.verify.certificate.certify import certify_hole
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="thousands of tubes")
 

@@ -10,9 +10,9 @@ import pytest
 import zerorev as zr
 from oracles import free_walks, holes
 from zerorev.model.hole import Hole
-from zerorev.optimum import deepest_as_drilled
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.free_deepest import CLOSEST, deepest_free
+from zerorev.search.optimum import deepest_as_drilled
 from zerorev.search.problem import Problem
 
 BUDGET = 50_000

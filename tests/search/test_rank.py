@@ -9,14 +9,14 @@ import numba
 import numpy as np
 import pytest
 
-from zerorev.evaluation import Evaluation, meets_threshold
 from zerorev.maps.cells import KINDS
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.map_task import Question
 from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
-from zerorev.planning import plan
+from zerorev.motion.evaluation import Evaluation, meets_threshold
+from zerorev.planning.hole import plan
 from zerorev.search.rank import Candidate, Order
 
 X = np.array([1.0, 0.0, 0.0])

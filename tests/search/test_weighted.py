@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from oracles.search import pairs, trace_legs
-from zerorev.criteria import measure, objective_of
-from zerorev.evaluation import evaluate, meets_threshold
 from zerorev.model.hole import Hole
 from zerorev.model.job import CRITERIA, Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.criteria import measure, objective_of
+from zerorev.motion.evaluation import evaluate, meets_threshold
 from zerorev.search import weighted
 from zerorev.search.exact import search
 from zerorev.search.straight import straight_motion

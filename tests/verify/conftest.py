@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import yaml
 
-import zerorev.model
+import zerorev.files
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Event, HolePlan, Motion, Score
@@ -15,12 +15,12 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import branch_of, posture_of, skeleton
-from zerorev.verify.certificate import certify_hole
+from zerorev.verify.certificate.certify import certify_hole
 from zerorev.verify.measure import mean_rates, reversals, travel
 from zerorev.verify.path import Track, follow, legs
 from zerorev.verify.sound import limit_distances
 
-MODEL = Path(zerorev.model.__file__).parent
+FILES = Path(zerorev.files.__file__).parent
 ROBOTS = ("kuka_kr6_r700_2", "kuka_kr120_r2700_2", "abb_irb4600_60_205", "yaskawa_gp8", "staubli_tx2_90l")
 
 # thesis Appendix B with theory §6 and §7: target [mm], stroke [mm], spins [deg], joints at start, target, end [deg]
@@ -59,7 +59,7 @@ PUBLISHED = {
 
 
 def load_robot(name):
-    data = yaml.safe_load((MODEL / "robots" / f"{name}.yaml").read_text())
+    data = yaml.safe_load((FILES / "robots" / f"{name}.yaml").read_text())
     lengths, joints = data["geometry_mm"], data["joints"]
     arm = ArmGeometry(
         *(lengths[key] * 1e-3 for key in ("a1", "a2", "b", "c1", "c2", "c3", "c4")),
@@ -82,7 +82,7 @@ def robot(request):
 
 @pytest.fixture(scope="session")
 def drill():
-    data = yaml.safe_load((MODEL / "tools" / "thesis_drill.yaml").read_text())
+    data = yaml.safe_load((FILES / "tools" / "thesis_drill.yaml").read_text())
     return Tool.from_mm_deg(data["tcp_mm"], data["rpy_deg"], name=data["name"])
 
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zerorev.criteria import compliance as planned_compliance
-from zerorev.criteria import manipulability as planned_manipulability
-from zerorev.criteria import measure
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import jacobian
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.criteria import compliance as planned_compliance
+from zerorev.motion.criteria import manipulability as planned_manipulability
+from zerorev.motion.criteria import measure
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import jacobian
 from zerorev.verify.arm import posture_of
 from zerorev.verify.digits import moved_figures
 from zerorev.verify.figures import figures, nearer_turn

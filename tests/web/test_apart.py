@@ -14,11 +14,11 @@ import pytest
 
 from oracles import hogs
 from zerorev.errors import InputError
-from zerorev.jobs import plan_job
-from zerorev.model.files import job_from_text, plan_to_json, write_plan
-from zerorev.model.job_data import job_files
-from zerorev.model.text import json_text
-from zerorev.model.yaml_text import yaml_text
+from zerorev.files.io import job_from_text, plan_to_json, write_plan
+from zerorev.files.job_data import job_files
+from zerorev.files.text import json_text
+from zerorev.files.yaml_text import yaml_text
+from zerorev.planning.job import plan_job
 from zerorev.web import apart, files
 from zerorev.web.apart import Apart, Stopped
 from zerorev.web.aside import aside

@@ -12,9 +12,9 @@ import pytest
 import zerorev as zr
 from zerorev.cli import main
 from zerorev.cli.common import FINE
-from zerorev.evaluation import evaluate
-from zerorev.model.files import job_from_text, plan_from_text
+from zerorev.files.io import job_from_text, plan_from_text
 from zerorev.model.profile import Profile
+from zerorev.motion.evaluation import evaluate
 
 pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect

@@ -11,7 +11,7 @@ pytest.importorskip("nicegui")
 
 from oracles.published import POSITIONS
 from zerorev.model.profile import Profile
-from zerorev.report.bracket import bracket
+from zerorev.report.scene.bracket import bracket
 from zerorev.web.views.bracket import options, sentence
 
 NAMES = ("A1", "A2", "A3", "A4", "A5", "{A6}")

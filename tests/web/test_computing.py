@@ -13,7 +13,7 @@ import pytest
 
 from zerorev.errors import InputError
 from zerorev.model.job import Job, Settings
-from zerorev.planning import plan, plan_deepest
+from zerorev.planning.hole import plan, plan_deepest
 from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session

@@ -10,10 +10,10 @@ import pytest
 pytest.importorskip("nicegui")
 
 from oracles.published import POSITIONS
-from zerorev.kinematics import forward, tcp_pose
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.report.motion_look import curves, held, look
+from zerorev.motion.kinematics import forward, tcp_pose
+from zerorev.report.scene.motion_look import curves, held, look
 from zerorev.web.views.curves import options
 
 P = POSITIONS[0]

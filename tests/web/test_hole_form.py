@@ -14,7 +14,7 @@ from zerorev.errors import InputError
 from zerorev.model._arrays import rotation_rpy, transform
 from zerorev.model.job import Job, Settings
 from zerorev.model.profile import Profile
-from zerorev.report.hole_rows import part_data
+from zerorev.report.words.hole_rows import part_data
 from zerorev.web.session import Session
 from zerorev.web.state import opened_job, with_hole, with_holes, with_settings, without_hole
 from zerorev.web.views.fields import Fields, number

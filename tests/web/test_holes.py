@@ -17,7 +17,7 @@ from oracles.published import POSITIONS
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import Finding, HolePlan
-from zerorev.report.hole_rows import matching
+from zerorev.report.words.hole_rows import matching
 from zerorev.web.session import Session
 from zerorev.web.state import answered, opened_job, selected, with_hole, without_hole
 from zerorev.web.views import holes as view

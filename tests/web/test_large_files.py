@@ -7,8 +7,8 @@ import time
 
 import pytest
 
-from zerorev.jobs import plan_job
-from zerorev.model.files import job_from_text, write_plan
+from zerorev.files.io import job_from_text, write_plan
+from zerorev.planning.job import plan_job
 
 pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect

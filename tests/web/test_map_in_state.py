@@ -9,7 +9,7 @@ import pytest
 
 from oracles.made_map import made_map
 from zerorev.errors import InputError
-from zerorev.report.map_slice import slice_of
+from zerorev.report.scene.map_slice import slice_of
 from zerorev.web.state import opened_map, with_cell
 
 AXES = ([500], [0, 100, 200], [600, 700])

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 import zerorev
+from oracles.places import JOBS
 from zerorev.errors import InputError
-from zerorev.jobs import plan_job
-from zerorev.model.files import job_from_text, plan_to_json, read_job, write_plan
-from zerorev.model.text import json_text
-from zerorev.model.yaml_text import yaml_text
+from zerorev.files.io import job_from_text, plan_to_json, read_job, write_plan
+from zerorev.files.text import json_text
+from zerorev.files.yaml_text import yaml_text
+from zerorev.planning.job import plan_job
 from zerorev.web.opening import demo, opened, opened_text
 from zerorev.web.state import plan_of
 
-JOBS = Path(__file__).parents[2] / "examples" / "jobs"
 TOOL = {"tcp_mm": [100, 0, 65], "rpy_deg": [0, -90, 0]}
 HOLES = [{"id": "first", "target_mm": [500, 300, 800], "direction": [1, 0, 0], "depth_mm": 50}]
 JOB = {"robot": "kuka_kr6_r700_2", "tool": TOOL, "holes": HOLES}

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import tcp_pose, wrist_offset
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
-from zerorev.report.arm_shapes import link_frames
-from zerorev.report.cell_data import slice_data
-from zerorev.report.replay import replay_page
-from zerorev.report.urdf_meshes import Mesh
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import tcp_pose, wrist_offset
+from zerorev.report.scene.arm_shapes import link_frames
+from zerorev.report.scene.cell_data import slice_data
+from zerorev.report.scene.replay import replay_page
+from zerorev.report.scene.urdf_meshes import Mesh
 
 NASTY = "</script><img src=x onerror=alert(1)>"
 NO_WEBGL = "HTMLCanvasElement.prototype.getContext = () => null"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
+
+from oracles.places import ROOT
 
 pytestmark = [pytest.mark.xdist_group("browser"), pytest.mark.long]
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
 
-SCREENS = Path(__file__).parents[2] / "out" / "screens"
+SCREENS = ROOT / "out" / "screens"
 SIZES = {"1280": (1280, 900), "1920": (1920, 1080), "1920 at 125 %": (1536, 864)}
 
 

@@ -18,10 +18,11 @@ import socketio
 import wsproto
 import wsproto.events
 
+from oracles.places import JOBS
 from zerorev.cli.common import BAD_INPUT, FINE, INTERRUPTED
 
 PATIENCE = 90.0  # [s] a machine may be busy
-PANEL = Path(__file__).parents[2] / "examples" / "jobs" / "panel.yaml"
+PANEL = JOBS / "panel.yaml"
 
 
 def asks(server, **more) -> httpx.Client:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from zerorev.errors import InputError
-from zerorev.jobs import plan_job
-from zerorev.model.files import plan_to_json
+from zerorev.files.io import plan_to_json
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import Finding
-from zerorev.planning import plan, plan_deepest
+from zerorev.planning.hole import plan, plan_deepest
+from zerorev.planning.job import plan_job
 from zerorev.web.session import undone
 from zerorev.web.state import (
     Progress,

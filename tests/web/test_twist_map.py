@@ -13,12 +13,12 @@ import pytest
 pytest.importorskip("nicegui")
 
 from oracles.published import POSITIONS
-from zerorev.evaluation import evaluate
-from zerorev.kinematics import wrist_offset
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
-from zerorev.report.twist_map import LIMITED, UNREACHED, twist_map
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import wrist_offset
+from zerorev.report.scene.twist_map import LIMITED, UNREACHED, twist_map
 from zerorev.web.session import Session
 from zerorev.web.state import Steered, answered, opened_job, selected, steered
 from zerorev.web.views import twist_map as view

@@ -29,7 +29,7 @@ from zerorev.cli import (  # noqa: F401
 )
 from zerorev.cli.common import BAD_INPUT, BUG, FINE, FOUND, INTERRUPTED, PIPE_CLOSED, app
 from zerorev.errors import NotExportableError, ZerorevError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["app", "main"]
 

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need, numbers
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["offset", "rates"]
 
@@ -21,13 +21,13 @@ def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> 
         psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
         json: Print JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_job
+    from zerorev.files.io import read_job
 
     wanted = read_job(job)
 
-    from zerorev.critical import critical_at
-    from zerorev.prediction import predict
-    from zerorev.report import rates as shown
+    from zerorev.motion.critical import critical_at
+    from zerorev.report.words import rates as shown
+    from zerorev.search.prediction import predict
 
     if psi_deg is not None:
         at, psi = partial(critical_at, wanted.robot, wanted.tool), math.radians(psi_deg)
@@ -67,8 +67,8 @@ def offset(
         figure: Picture to draw (PNG).
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_job
-    from zerorev.model.output import write_bytes, write_text
+    from zerorev.files.io import read_job
+    from zerorev.files.output import write_bytes, write_text
 
     check_outputs((output, figure), job)
     if figure is not None:
@@ -77,9 +77,9 @@ def offset(
     angles = None if angles_deg is None else [math.radians(value) for value in numbers(angles_deg, "--angles-deg")]
     wanted = read_job(job)
 
-    from zerorev.model.text import json_text
-    from zerorev.report import offset as shown
-    from zerorev.tool_offset import least_offset, offset_curve
+    from zerorev.files.text import json_text
+    from zerorev.placement.tool_offset import least_offset, offset_curve
+    from zerorev.report.words import offset as shown
 
     strokes = len(wanted.holes) * len(offsets) * len(angles or [0])
     with terminal.progress("deepest strokes", strokes) as progress:

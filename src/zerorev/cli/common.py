@@ -80,7 +80,7 @@ Whole = Annotated[int, Parameter(converter=_whole)]
 
 def check_outputs(outputs: Iterable[Path | None], *sources: Path) -> None:
     """Refuse, before any work is done, files that could not be written, and to write over a file that is read."""
-    from zerorev.model.output import check_file, place_of
+    from zerorev.files.output import check_file, place_of
 
     taken: list[Path] = []
     for output in outputs:

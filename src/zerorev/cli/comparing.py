@@ -7,7 +7,7 @@ from pathlib import Path
 
 from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, need
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["compare"]
 
@@ -47,8 +47,8 @@ def compare(
         figure: Picture to draw (PNG): box plots.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_job
-    from zerorev.model.output import write_bytes, write_text
+    from zerorev.files.io import read_job
+    from zerorev.files.output import write_bytes, write_text
 
     check_outputs((output, figure), job)
     if figure is not None:
@@ -57,9 +57,9 @@ def compare(
         raise InputError(f"{seeds} seeds", where="--seeds", accepted="1 or more")
     wanted = read_job(job)
 
-    from zerorev.compare import comparison, runs
-    from zerorev.model.text import json_text
-    from zerorev.report import comparison as shown
+    from zerorev.files.text import json_text
+    from zerorev.thesis import comparison as shown
+    from zerorev.thesis.compare import comparison, runs
 
     given = {"budget": budget, "samples": samples}
     limits = {key: value for key, value in given.items() if value is not None}
@@ -86,8 +86,8 @@ def compare(
     if output is not None:
         write_text(output, shown.comparison_csv(answer) if output.suffix.lower() == ".csv" else json_text(data))
     if figure is not None:
-        from zerorev.report.figures.comparison import comparison_boxes
         from zerorev.report.figures.style import png
+        from zerorev.thesis.figures.comparison import comparison_boxes
 
         write_bytes(figure, png(comparison_boxes(answer)))
     for what, path in (("answer", output), ("figure", figure)):

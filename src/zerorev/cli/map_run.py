@@ -10,7 +10,7 @@ from cyclopts import Parameter
 
 from zerorev.cli.common import FINE, map_app, need
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.maps.run import Runner
@@ -46,8 +46,8 @@ def run(
             raise InputError(
                 "is for this machine, and --scheduler for another", where="--workers", accepted="one of them"
             )
-    from zerorev.model.map_file import read_map_file
-    from zerorev.model.output import check_folder
+    from zerorev.files.map_file import read_map_file
+    from zerorev.files.output import check_folder
 
     task = read_map_file(map)
     if task.cells_in_base:
@@ -56,7 +56,7 @@ def run(
             f" {task.outside})"
         )
     from zerorev.maps.run import local, run_map
-    from zerorev.report.map_run import summary_lines
+    from zerorev.report.words.map_run import summary_lines
 
     if scheduler is None:
         place: AbstractContextManager[Runner] = nullcontext(local(workers))

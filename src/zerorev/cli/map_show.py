@@ -7,7 +7,7 @@ from typing import Literal
 
 from zerorev.cli.common import FINE, Output, Whole, map_app, need, numbers
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["compare_maps", "show"]
 
@@ -34,7 +34,7 @@ def show(
         across: The axis that the planes stand across, x, y or z; by default the one that the drill is nearest to.
         at: Target of the rose, X,Y,Z in mm; by default that of the best cell.
     """
-    from zerorev.model.output import check_file, check_folder
+    from zerorev.files.output import check_file, check_folder
 
     _need_maps("map show")
     if figures is not None:
@@ -49,7 +49,7 @@ def show(
         raise InputError(f"{len(target)} numbers", where="--at", accepted="three: X,Y,Z in mm")
 
     from zerorev.maps.workspace import read_workspace_map
-    from zerorev.report.workspace_map import show_lines
+    from zerorev.report.words.workspace_map import show_lines
 
     found = read_workspace_map(map)
     if not 0 <= direction < found.sizes["direction"]:
@@ -65,7 +65,7 @@ def show(
     for path in written:
         terminal.say(f"figure written to {path}")
     if page is not None:
-        from zerorev.model.output import write_text
+        from zerorev.files.output import write_text
         from zerorev.report.figures.workspace import robot_at_home
         from zerorev.report.figures.workspace_page import workspace_page
 
@@ -84,7 +84,7 @@ def compare_maps(first: Path, second: Path, /, *, output: Output = None, figure:
         output: Where to write the cells side by side (CSV).
         figure: Picture of the plane with the greatest change (PNG).
     """
-    from zerorev.model.output import check_file, write_bytes, write_text
+    from zerorev.files.output import check_file, write_bytes, write_text
 
     _need_maps("map compare")
     if figure is not None:
@@ -95,7 +95,7 @@ def compare_maps(first: Path, second: Path, /, *, output: Output = None, figure:
 
     from zerorev.maps.answers import cells_of, difference
     from zerorev.maps.workspace import read_workspace_map
-    from zerorev.report.workspace_map import difference_csv, difference_lines, heading, names_of
+    from zerorev.report.words.workspace_map import difference_csv, difference_lines, heading, names_of
 
     maps = [read_workspace_map(path) for path in (first, second)]
     names = names_of(first, second)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from zerorev.cli.common import FINE, Output, Whole, app, need
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.hole import Hole
@@ -54,8 +54,8 @@ def map_parameters(
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         need("plotly", "plotly", "--figures", "maps")
-    from zerorev.model.files import read_job
-    from zerorev.model.output import check_folder, check_whole_folder, make_folder, write_bytes, write_text
+    from zerorev.files.io import read_job
+    from zerorev.files.output import check_folder, check_whole_folder, make_folder, write_bytes, write_text
 
     if output is not None:
         check_whole_folder(output, "zarr.json")
@@ -66,11 +66,11 @@ def map_parameters(
     wanted = read_job(job)
     place = _hole(wanted, hole)
 
-    from zerorev.maps.measures import mirrored
-    from zerorev.maps.parameter_map import parameter_map, spin_axis
-    from zerorev.maps.store import write_map
-    from zerorev.report.parameter_map import TURNS, map_lines
-    from zerorev.search.sampled import Weighing
+    from zerorev.thesis.measures import mirrored
+    from zerorev.thesis.parameter_map import parameter_map, spin_axis
+    from zerorev.thesis.parameter_map_lines import TURNS, map_lines
+    from zerorev.thesis.sampled import Weighing
+    from zerorev.thesis.store import write_map
 
     bound = wanted.settings.psi_bound or math.pi
     made = partial(parameter_map, wanted.robot, wanted.tool, place, size=size, psi_range=(-bound, bound))
@@ -91,9 +91,9 @@ def map_parameters(
         write_map(found, output)
         terminal.say(f"map written to {output}")
     if figures is not None:
-        from zerorev.report.figures.map_page import map_page
-        from zerorev.report.figures.parameter_map import parameter_slices, zero_volume
         from zerorev.report.figures.style import png
+        from zerorev.thesis.figures.parameter_map import parameter_slices, zero_volume
+        from zerorev.thesis.figures.parameter_map_page import map_page
 
         make_folder(figures)
         psi_target = [math.radians(psi_target_deg)]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, need
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.job import Job
@@ -59,10 +59,10 @@ def place(
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.jobs import workers_for
-    from zerorev.model.files import read_job
-    from zerorev.model.output import check_folder, write_text
-    from zerorev.model.text import json_text
+    from zerorev.files.io import read_job
+    from zerorev.files.output import check_folder, write_text
+    from zerorev.files.text import json_text
+    from zerorev.planning.job import workers_for
 
     check_outputs((output, write_job), job)
     if figures is not None:
@@ -73,7 +73,7 @@ def place(
     wanted = read_job(job)
 
     from zerorev.placement.freedom import Freedom
-    from zerorev.report import placement as shown
+    from zerorev.report.words import placement as shown
 
     x, y, z = ((low / 1e3, high / 1e3) for low, high in ends[:3])
     freedom = Freedom(x, y, z, (math.radians(ends[3][0]), math.radians(ends[3][1])))
@@ -120,7 +120,7 @@ def _searched(job: Job, freedom: Freedom, grid: int, cells: int, workers: int) -
 
 
 def _drawn(job: Job, found: Placement, folder: Path) -> str:
-    from zerorev.model.output import make_folder, write_bytes
+    from zerorev.files.output import make_folder, write_bytes
     from zerorev.report.figures.placement import placement_map
     from zerorev.report.figures.style import png
 
@@ -130,9 +130,9 @@ def _drawn(job: Job, found: Placement, folder: Path) -> str:
 
 
 def _job_written(job: Job, found: Placement, target: Path, source: Path) -> str:
-    from zerorev.model.moved_job import write_job
+    from zerorev.files.moved_job import write_job
     from zerorev.placement.freedom import frame_at
-    from zerorev.report.placement import place_words
+    from zerorev.report.words.placement import place_words
 
     note = f"{source.name} with its part moved by zerorev place: {place_words(found.place)}"
     write_job(target, source, T_base_part=frame_at(job.T_base_part, found.place), note=note)
@@ -163,11 +163,11 @@ def share(
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.jobs import workers_for
-    from zerorev.model.files import read_job
-    from zerorev.model.moved_job import write_job
-    from zerorev.model.output import check_file, check_folder, make_folder, write_text
-    from zerorev.model.text import json_text
+    from zerorev.files.io import read_job
+    from zerorev.files.moved_job import write_job
+    from zerorev.files.output import check_file, check_folder, make_folder, write_text
+    from zerorev.files.text import json_text
+    from zerorev.planning.job import workers_for
 
     check_outputs((output,), *jobs)
     targets = [] if write_jobs is None else [write_jobs / job.name for job in jobs]
@@ -180,8 +180,8 @@ def share(
                 check_file(target, *jobs)
     wanted = [read_job(job) for job in jobs]
 
-    from zerorev import sharing
-    from zerorev.report import placement as shown
+    from zerorev.placement import sharing
+    from zerorev.report.words import placement as shown
 
     strokes = sum(len(job.holes) for job in wanted)
     with terminal.progress("deepest strokes", strokes, "stroke") as progress:

@@ -34,8 +34,8 @@ def plan(
         workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
         json: Print the plan as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_job
-    from zerorev.model.output import check_folder
+    from zerorev.files.io import read_job
+    from zerorev.files.output import check_folder
 
     check_outputs((output,), job)
     if figures is not None:
@@ -43,7 +43,7 @@ def plan(
         check_folder(figures)
     wanted = read_job(job, options={} if proof_boxes is None else {"proof_boxes": proof_boxes})
 
-    from zerorev.run import run
+    from zerorev.cli.answering import run
 
     return FINE if run(wanted, "asked", output, workers, json=json, figures=figures) else FOUND
 
@@ -78,7 +78,7 @@ def depth(
         workers: Processes to run it on; by default all cores where the job is large. The answer is the same.
         json: Print what the file holds as JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_job
+    from zerorev.files.io import read_job
 
     check_outputs((output,), job)
     options = {
@@ -91,6 +91,6 @@ def depth(
     given = {key: value for key, value in options.items() if value is not None}
     wanted = read_job(job, depth_needed=False, options=given)
 
-    from zerorev.run import run
+    from zerorev.cli.answering import run
 
     return FINE if run(wanted, "deepest", output, workers, json=json) else FOUND

@@ -10,7 +10,7 @@ from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, n
 from zerorev.cli.proofs import Proofs
 from zerorev.cli.tolerances import Tolerances
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.plan import Plan
@@ -59,10 +59,10 @@ def check(
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
             of each hole of the program; with --proof, `proofs` besides.
     """
-    from zerorev.model.checked_files import remember
-    from zerorev.model.files import plan_from_text, plan_to_json, write_plan
-    from zerorev.model.output import check_file
-    from zerorev.model.text import read_text
+    from zerorev.files.checked_files import remember
+    from zerorev.files.io import plan_from_text, plan_to_json, write_plan
+    from zerorev.files.output import check_file
+    from zerorev.files.text import read_text
 
     if program is not None and not certify:
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
@@ -77,12 +77,12 @@ def check(
     text = read_text(plan, PLAN_FILE)
     stated = plan_from_text(text, str(plan))
     if program is not None:
-        from zerorev.program.read_back import read_program
+        from zerorev.program.krl.read import read_program
 
         written = read_program(program)
 
-    from zerorev.jobs import workers_for
-    from zerorev.restated import check_plan, without_proofs
+    from zerorev.planning.job import workers_for
+    from zerorev.planning.restated import check_plan, without_proofs
 
     with terminal.progress("checking", len(stated.holes)) as progress:
         checked = check_plan(stated, workers=workers_for(len(stated.holes), None), progress=progress)
@@ -90,7 +90,7 @@ def check(
         remember(text)
     if program is not None:
         from zerorev.program.as_exported import as_exported
-        from zerorev.verify.certificate_program import certify_program
+        from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
             drilled = as_exported(checked.plan, written, program.stem)
@@ -128,10 +128,10 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
         output: The program's file; by default beside the plan, called as the plan is.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
     """
-    from zerorev.model.checked_files import is_checked
-    from zerorev.model.files import plan_from_text
-    from zerorev.model.output import write_text
-    from zerorev.model.text import read_text
+    from zerorev.files.checked_files import is_checked
+    from zerorev.files.io import plan_from_text
+    from zerorev.files.output import write_text
+    from zerorev.files.text import read_text
 
     check_outputs((output,), plan)
     text = read_text(plan, PLAN_FILE)
@@ -141,9 +141,9 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
 
         answer = known_as_checked(answer)
 
-    from zerorev.jobs import workers_for
+    from zerorev.planning.job import workers_for
     from zerorev.program.export import export as to_program
-    from zerorev.report import tables
+    from zerorev.report.words import tables
 
     name, workers = output.stem if output else None, workers_for(len(answer.holes), None)
     with terminal.progress("checking", len(answer.holes)) as progress:
@@ -163,7 +163,7 @@ def _passed(plan: Plan) -> set[str]:
 
 
 def _verdict(answer: Plan, *, certify: bool = False) -> int:
-    from zerorev.report.answer import Shown
+    from zerorev.report.words.answer import Shown
 
     shown = Shown(answer, answer.holes)
     return FINE if shown.sound and (shown.certified or not certify) else FOUND
@@ -176,6 +176,6 @@ def _proofs(plan: dict[str, Any], program: str) -> dict[str, Any]:
 
 
 def _show_plan(answer: Plan) -> None:
-    from zerorev.report.answer import Shown
+    from zerorev.report.words.answer import Shown
 
     Shown(answer, answer.holes).show()

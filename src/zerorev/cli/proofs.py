@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from zerorev.cli.common import FINE, FOUND
 from zerorev.errors import InputError
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.plan import Plan
-    from zerorev.proof_check import StatementCheck
+    from zerorev.planning.proof_check import StatementCheck
 
 __all__ = ["Proofs"]
 
@@ -44,7 +44,7 @@ class Proofs(NamedTuple):
         """What the plan states of its optimality, checked; nothing where that is not wanted."""
         if not self.wanted:
             return []
-        from zerorev.proof_check import check_proofs
+        from zerorev.planning.proof_check import check_proofs
 
         with terminal.progress("checking proofs", len(plan.holes)) as progress:
             return check_proofs(plan, sample=self.sample, progress=progress)

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from zerorev.cli.common import FINE, app, check_outputs, need
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["replay"]
 
@@ -30,8 +30,8 @@ def replay(
         hole: Only this hole; may be given several times. By default all holes of the plan.
         urdf: Description of the plan's robot (URDF), whose meshes are shown; they lie in the same folder.
     """
-    from zerorev.model.files import read_plan
-    from zerorev.model.output import write_text
+    from zerorev.files.io import read_plan
+    from zerorev.files.output import write_text
 
     need("nicegui", "NiceGUI, whose three.js draws the robot,", "replay", "view")
     if urdf is not None:
@@ -39,8 +39,8 @@ def replay(
     check_outputs((output,), plan, *([urdf] if urdf else []))
     answer = read_plan(plan)
 
-    from zerorev.report.replay import replay_page
-    from zerorev.report.urdf_meshes import read_meshes
+    from zerorev.report.scene.replay import replay_page
+    from zerorev.report.scene.urdf_meshes import read_meshes
 
     with terminal.busy("writing"):
         page = replay_page(answer, hole or None, None if urdf is None else read_meshes(urdf, answer.robot))

@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from zerorev.cli.common import FINE, app, need
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["reproduce"]
 
@@ -36,9 +36,9 @@ def reproduce(
     for package in ("matplotlib", "xarray", "jinja2"):
         need(package, package, "reproduce", "report")
 
-    from zerorev.report.reproduce.context import Context
-    from zerorev.report.reproduce.progress import told
-    from zerorev.report.reproduce.runner import reproduce as make_page
+    from zerorev.thesis.reproduce.context import Context
+    from zerorev.thesis.reproduce.progress import told
+    from zerorev.thesis.reproduce.runner import reproduce as make_page
 
     with told() as teller:
         page = make_page(chapter, output, Context(seeds, map_size), teller)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from zerorev.cli.common import FINE, app
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["robots"]
 
@@ -16,8 +16,8 @@ def robots(name: str | None = None, /, *, json: bool = False) -> int:
         name: One of the list, or the path of a robot file.
         json: Print JSON on standard output, and nothing else there.
     """
-    from zerorev.model.files import read_robot, robot_names
-    from zerorev.report import tables
+    from zerorev.files.io import read_robot, robot_names
+    from zerorev.report.words import tables
 
     found = [read_robot(each) for each in ([name] if name else robot_names())]
     if json:

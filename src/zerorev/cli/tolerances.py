@@ -69,7 +69,7 @@ class Tolerances(NamedTuple):
     def certified(self, plan: Plan) -> Plan:
         """The plan with its certificates, and with what is certified within a tolerance."""
         from zerorev.model.plan import Within
-        from zerorev.verify.certificate_within import RATIO, certify_plan_again, certify_plan_within
+        from zerorev.verify.certificate.within import RATIO, certify_plan_again, certify_plan_within
 
         if self.mm is not None and self.deg is not None:
             return certify_plan_within(plan, Within(self.mm * 1e-3, math.radians(self.deg)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from zerorev.cli.common import FINE, Whole, app, need
-from zerorev.report import terminal
+from zerorev.report.words import terminal
 
 __all__ = ["view"]
 

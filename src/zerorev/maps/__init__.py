@@ -1,1 +1,1 @@
-"""Maps: an objective looked at everywhere on a grid, kept with its coordinates."""
+"""One question asked at many targets: tasks, cells, running, storage, answers."""

@@ -9,18 +9,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kinematics import inverse, tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import Question
 from zerorev.model.profile import Profile
-from zerorev.motion import turns_within
-from zerorev.optimum import best_motion, deepest_as_drilled
-from zerorev.prediction import narrowest
+from zerorev.motion.joint_path import turns_within
+from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.search.free_deepest import SEGMENTS
+from zerorev.search.optimum import best_motion, deepest_as_drilled
+from zerorev.search.prediction import narrowest
 from zerorev.search.rank import Candidate
 from zerorev.search.straight import target_spins
-from zerorev.search.thesis_stroke import thesis_stroke
+from zerorev.thesis.stroke import thesis_stroke
 
 __all__ = ["KINDS", "KNOTS", "STATUS", "Block", "Kind", "answer", "columns_of"]
 

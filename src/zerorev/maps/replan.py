@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.model._units import m, rad, rad_per_m
-from zerorev.model.conversion import robot_from, tool_from
+from zerorev.files.conversion import robot_from, tool_from
+from zerorev.files.schema import RobotForm, ToolForm
+from zerorev.files.units import m, rad, rad_per_m
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.map_task import Question
 from zerorev.model.profile import Profile
-from zerorev.model.schema import RobotForm, ToolForm
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zerorev.errors import InputError
-from zerorev.model.map_schema import MOST_CELLS
-from zerorev.model.text import read_bytes
+from zerorev.files.map_schema import MOST_CELLS
+from zerorev.files.text import read_bytes
 
 if TYPE_CHECKING:
     from xarray import Dataset

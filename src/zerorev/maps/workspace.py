@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zerorev.errors import InputError, OutputError, ZerorevError
+from zerorev.files.conversion import robot_data, settings_data, tool_data
+from zerorev.files.output import as_output_error, check_folder, write_whole_folder
+from zerorev.files.units import mm, plain
+from zerorev.files.validation import inside
 from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.replan import question_of
 from zerorev.maps.sound import MARK, check_grid, check_store
-from zerorev.model._units import mm, plain
-from zerorev.model.conversion import robot_data, settings_data, tool_data
 from zerorev.model.map_task import NEED_DEPTH, SWARMS, MapTask
-from zerorev.model.output import as_output_error, check_folder, write_whole_folder
-from zerorev.model.validation import inside
 
 if TYPE_CHECKING:
     from xarray import Dataset

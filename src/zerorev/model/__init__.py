@@ -1,1 +1,1 @@
-"""Frozen nouns, validated when made: robot, tool, hole, job, profile, plan, and their files."""
+"""Frozen nouns, validated when made: robot, tool, hole, job, settings, profile, motion, plan, finding."""

@@ -39,7 +39,7 @@ class Settings:
         objective: among plans of equal reversals that keep the threshold: least `travel`, greatest `margin` (slowest
             joint), or least `plunge_rotation`.
         weights: pairs of a criterion and its weight, whose weighted sum is to be least instead of the objective
-            (`zerorev.criteria`); none: the objective decides.
+            (`zerorev.motion.criteria`); none: the objective decides.
         joint_stiffness: of each joint [N m/rad], shape (6,), for the compliance at the tip; None: unknown.
         reversal_weights: what a reversal of each joint costs, shape (6,), each above 0.
         near_joints: joint angles [rad], shape (6,), to which free turns are chosen nearest; None: the turns farthest

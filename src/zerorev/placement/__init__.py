@@ -1,1 +1,1 @@
-"""Where a part should stand, so that every hole of its pattern is drilled without a reversal (thesis sec. 4.6)."""
+"""Where a part should stand, which of two robots should drill a hole, how far the tool stands off (thesis sec. 4.6)."""

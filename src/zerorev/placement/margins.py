@@ -10,8 +10,8 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.job import Job
-from zerorev.optimum import deepest_as_drilled
 from zerorev.placement.freedom import job_at
+from zerorev.search.optimum import deepest_as_drilled
 from zerorev.workers import Workers
 
 __all__ = ["Look", "Margins", "least"]

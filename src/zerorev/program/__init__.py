@@ -1,1 +1,1 @@
-"""Neutral program, preflight, and one file a controller."""
+"""The neutral program, its checks before it is written, and one folder for each dialect."""

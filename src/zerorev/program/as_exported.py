@@ -16,10 +16,10 @@ from decimal import Decimal
 from zerorev.errors import InputError
 from zerorev.model.plan import Plan
 from zerorev.model.written import Drilled, Statement, Word, WrittenHole, WrittenProgram
-from zerorev.program.krl import to_krl
-from zerorev.program.krl_text import identifier
+from zerorev.program.krl.read import read_krl
+from zerorev.program.krl.text import identifier
+from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import Program, build_program, refusals
-from zerorev.program.read_back import read_krl
 
 __all__ = ["Expected", "as_exported", "expected"]
 

@@ -8,8 +8,8 @@ from functools import partial
 
 from zerorev.errors import InputError, NotExportableError
 from zerorev.model.plan import Finding, HolePlan, Plan
-from zerorev.program.krl import refuse_other_makers, to_krl
-from zerorev.program.krl_text import identifier
+from zerorev.program.krl.text import identifier
+from zerorev.program.krl.write import refuse_other_makers, to_krl
 from zerorev.program.neutral import Program, build_program
 from zerorev.program.preflight import preflight
 from zerorev.verify.check import subject, verify_hole

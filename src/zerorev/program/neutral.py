@@ -15,11 +15,11 @@ from typing import Literal
 import numpy as np
 
 from zerorev.errors import NotExportableError
-from zerorev.kinematics import tcp_pose
-from zerorev.lead_in import find_lead_in
 from zerorev.model._arrays import Array, transform
 from zerorev.model.job import Settings
 from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, named_holes
+from zerorev.motion.kinematics import tcp_pose
+from zerorev.program.lead_in import find_lead_in
 from zerorev.program.waypoints import Waypoint, waypoints, with_blends
 
 __all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals"]

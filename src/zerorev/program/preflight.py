@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kinematics import forward, tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Finding, HolePlan, Plan
-from zerorev.motion import outward_rates
+from zerorev.motion.joint_path import outward_rates
+from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.neutral import HoleProgram, LinearMove, Program
 from zerorev.program.notes import notes, segments, tool_turn, turn_speed
 from zerorev.program.waypoints import GREATEST_TURN

@@ -1,1 +1,1 @@
-"""What a plan looks like: figures for people."""
+"""What a person looks at: figures, the scene behind pictures and player, words."""

@@ -1,1 +1,1 @@
-"""One file a method of finding the best motion of a hole."""
+"""Which motion is best: exact search, bounds, free legs, depth, prediction; `rank` is the one order of motions."""

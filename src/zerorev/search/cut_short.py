@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
+from zerorev.motion.kinematics import twist_plane
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Legs, Rules, bettered, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK

@@ -14,12 +14,12 @@ import numpy as np
 
 from zerorev.kernels import free as kernels
 from zerorev.kernels import legs, segments, tube
-from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.kinematics import twist_plane
 from zerorev.search.line import climb, edge, golden
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Rules, bettered, legs_through, motion_of

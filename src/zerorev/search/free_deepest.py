@@ -18,16 +18,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.evaluation import evaluate
 from zerorev.kernels import polyline as kernels
 from zerorev.kernels.arm import angles_along
-from zerorev.kinematics import twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.kinematics import twist_plane
 from zerorev.search.segments import Legs, breakpoints_of, motion_of
 from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST
 from zerorev.search.viable import MOST_ROWS, ROWS, Family, Grain, Held, Pair, Viable

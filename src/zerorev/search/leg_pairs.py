@@ -14,18 +14,18 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.criteria import compliance, manipulability, objective_of
 from zerorev.kernels.arm import flip_sign
 from zerorev.kernels.field import rates as rate_fields
 from zerorev.kernels.legs import NIL
-from zerorev.kinematics import TwistPlane, inverse, jacobian, tcp_pose, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Measures
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
-from zerorev.motion import JUMP, turns_within
+from zerorev.motion.criteria import compliance, manipulability, objective_of
+from zerorev.motion.joint_path import JUMP, turns_within
+from zerorev.motion.kinematics import TwistPlane, inverse, jacobian, tcp_pose, twist_plane
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]

@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import legs
-from zerorev.kinematics import TwistPlane, twist_plane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.kinematics import TwistPlane, twist_plane
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 

@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.criteria import measure, objective_of
-from zerorev.evaluation import Evaluation, evaluate, meets_threshold, steady_rates
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.criteria import measure, objective_of
+from zerorev.motion.evaluation import Evaluation, evaluate, meets_threshold, steady_rates
 
 __all__ = ["SAME_COST", "Candidate", "Order", "Rank"]
 

@@ -10,10 +10,10 @@ import numpy as np
 from zerorev.kernels import segments as kernels
 from zerorev.kernels import slp
 from zerorev.kernels.arm import twist_field
-from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
+from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.straight import LONGEST_TWIST
 
 __all__ = ["Goal", "Legs", "Rules", "bettered", "breakpoints_of", "legs_through", "motion_of", "sense_at"]

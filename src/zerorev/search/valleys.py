@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.evaluation import event_distance
 from zerorev.kernels import legs, pairs
 from zerorev.kernels.field import ROOM
 from zerorev.model._arrays import Array
-from zerorev.motion import outward_rates
+from zerorev.motion.evaluation import event_distance
+from zerorev.motion.joint_path import outward_rates
 from zerorev.search.problem import Asked, Mask, Problem
 from zerorev.search.rank import Candidate
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK

@@ -23,9 +23,9 @@ import numpy.typing as npt
 from zerorev.kernels import viable as kernels
 from zerorev.kernels.field import rates
 from zerorev.kernels.reach import KEPT, workspaces
-from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
+from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.straight import target_spins
 
 __all__ = ["Family", "Grain", "Held", "Pair", "Tubes", "Viable"]

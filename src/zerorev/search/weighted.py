@@ -17,14 +17,14 @@ from typing import get_args
 
 import numpy as np
 
-from zerorev.criteria import measure, objective_of
-from zerorev.kinematics import inverse, joint_rates, tcp_pose
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Objective, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.motion import turns_within
+from zerorev.motion.criteria import measure, objective_of
+from zerorev.motion.joint_path import turns_within
+from zerorev.motion.kinematics import inverse, joint_rates, tcp_pose
 from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order

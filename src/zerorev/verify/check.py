@@ -128,7 +128,7 @@ def known_as_checked(plan: Plan) -> Plan:
     """The plan, taken as it says of its own checks; for a caller who knows that they were made of what stands in it.
 
     Args:
-        plan: as read from a file that is known (`zerorev.model.checked_files`).
+        plan: as read from a file that is known (`zerorev.files.checked_files`).
     """
     holes = (
         hole

@@ -15,10 +15,10 @@ from dataclasses import replace
 from typing import Any
 
 from zerorev.errors import ZerorevError
-from zerorev.jobs import answers, workers_for
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Strokes
-from zerorev.report.outcome import outcome
+from zerorev.planning.job import answers, workers_for
+from zerorev.report.words.outcome import outcome
 from zerorev.web.session import Session
 from zerorev.web.state import Progress, State, answered
 
@@ -229,7 +229,7 @@ def certify(work: Work, holes: Sequence[Hole]) -> None:
         return
 
     def proven() -> Iterator[HolePlan]:
-        from zerorev.verify.certificate import certify_hole
+        from zerorev.verify.certificate.certify import certify_hole
 
         for answer in plans:
             yield replace(answer, certificate=certify_hole(job.robot, job.tool, job.settings, answer))

@@ -7,10 +7,10 @@ from dataclasses import fields
 from typing import Any
 
 from zerorev.errors import InputError
-from zerorev.model.files import job_from_text, plan_from_text, plan_to_json
+from zerorev.files.io import job_from_text, plan_from_text, plan_to_json
+from zerorev.files.text import json_text
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
-from zerorev.model.text import json_text
 
 __all__ = ["cut", "is_plan", "job_written", "parsed", "pieces", "plan_written", "read", "whole"]
 
@@ -90,6 +90,6 @@ def job_written(given: Iterator[Any]) -> Iterator[tuple[str, str]]:
     Raises:
         InputError: its holes count their spins from different references, and a job file has one.
     """
-    from zerorev.model.job_data import job_files
+    from zerorev.files.job_data import job_files
 
     yield from job_files(whole(given)).items()

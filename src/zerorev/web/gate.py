@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs
 
-from zerorev.model.text import MAX_BYTES
+from zerorev.files.text import MAX_BYTES
 
 __all__ = ["LARGEST", "Gate", "keeping"]
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
-from zerorev.model.files import read_job, read_plan
+from zerorev.files.io import read_job, read_plan
+from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
-from zerorev.model.text import read_text
 from zerorev.web.files import is_plan, parsed
 from zerorev.web.state import State, opened_job, opened_map, opened_plan
 
@@ -64,13 +64,13 @@ def with_meshes(state: State, urdf: Path) -> State:
     Raises:
         InputError: not a URDF file, or not one of this robot.
     """
-    from zerorev.report.urdf_meshes import read_meshes
+    from zerorev.report.scene.urdf_meshes import read_meshes
 
     return state if state.job is None else replace(state, meshes=read_meshes(urdf, state.job.robot))
 
 
 def _opened_map(path: Path) -> State:
     from zerorev.maps.workspace import read_workspace_map
-    from zerorev.report.map_slice import slice_of
+    from zerorev.report.scene.map_slice import slice_of
 
     return opened_map(slice_of(read_workspace_map(path)))

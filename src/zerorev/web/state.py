@@ -10,16 +10,16 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from zerorev.errors import InputError
-from zerorev.jobs import unanswered
 from zerorev.maps.replan import job_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
+from zerorev.planning.job import unanswered
 
 if TYPE_CHECKING:
-    from zerorev.report.map_slice import MapSlice
-    from zerorev.report.urdf_meshes import Mesh
+    from zerorev.report.scene.map_slice import MapSlice
+    from zerorev.report.scene.urdf_meshes import Mesh
 
 __all__ = [
     "Progress",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from zerorev.model.output import make_folder, write_bytes
+from zerorev.files.output import make_folder, write_bytes
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.plane import twist_plane

@@ -9,13 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from zerorev.evaluation import evaluate
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Event, HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
-from zerorev.motion import joints_along, sample_distances
+from zerorev.motion.evaluation import evaluate
+from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
-from zerorev.report.joint_range import joint_range
+from zerorev.report.scene.joint_range import joint_range
 
 __all__ = ["joint_angles"]
 

@@ -14,9 +14,9 @@ from matplotlib.ticker import MaxNLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.job import Job
-from zerorev.report.answer import how_deep
+from zerorev.placement.tool_offset import LeastOffset, OffsetCurve, offset_of
 from zerorev.report.figures import style
-from zerorev.tool_offset import LeastOffset, OffsetCurve, offset_of
+from zerorev.report.words.answer import how_deep
 
 __all__ = ["tool_offset"]
 

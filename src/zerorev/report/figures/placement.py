@@ -16,9 +16,9 @@ from zerorev.model.job import Job
 from zerorev.placement.freedom import AXES
 from zerorev.placement.room import Slice
 from zerorev.placement.search import Placement
-from zerorev.report.answer import how_deep
 from zerorev.report.figures import style
-from zerorev.report.placement import in_unit, place_words
+from zerorev.report.words.answer import how_deep
+from zerorev.report.words.placement import in_unit, place_words
 
 __all__ = ["placement_map"]
 

@@ -15,8 +15,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
-from zerorev.report.field import Field, field
 from zerorev.report.figures import style
+from zerorev.report.scene.field import Field, field
 
 __all__ = ["twist_plane"]
 

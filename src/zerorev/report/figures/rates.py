@@ -13,8 +13,8 @@ from matplotlib.ticker import MaxNLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
-from zerorev.report.bracket import Bracket, bracket
 from zerorev.report.figures import style
+from zerorev.report.scene.bracket import Bracket, bracket
 
 __all__ = ["critical_rates"]
 

@@ -21,7 +21,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
-from zerorev.report.palette import (
+from zerorev.report.scene.palette import (
     BASELINE_COLOUR,
     CANNOT_RUN,
     DASHES,

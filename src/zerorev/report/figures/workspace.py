@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from zerorev.errors import InputError
+from zerorev.files.output import make_folder, write_bytes
 from zerorev.maps.answers import Cells, best_cells, cells_of
 from zerorev.maps.planes import Across, is_grid, planes_of
 from zerorev.maps.replan import question_of
 from zerorev.model._arrays import Array
-from zerorev.model.output import make_folder, write_bytes
 from zerorev.report.figures.cell import direction_rose, named_direction, robot_in_cell
 from zerorev.report.figures.style import png
 from zerorev.report.figures.workspace_map import best_plane, map_planes, map_surface, map_views
-from zerorev.report.skeleton import home, joints_at, skeleton
-from zerorev.report.workspace_map import heading
+from zerorev.report.scene.skeleton import home, joints_at, skeleton
+from zerorev.report.words.workspace_map import heading
 
 if TYPE_CHECKING:
     from xarray import Dataset

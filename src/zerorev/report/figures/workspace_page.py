@@ -15,7 +15,7 @@ from zerorev.report.figures import style
 from zerorev.report.figures.cell import named_direction
 from zerorev.report.figures.page import embedded, html_page
 from zerorev.report.figures.workspace_map import ROBOT_COLOUR, VALUE_MAP, capital, colours_of
-from zerorev.report.workspace_map import heading
+from zerorev.report.words.workspace_map import heading
 
 if TYPE_CHECKING:
     from plotly.graph_objects import Figure

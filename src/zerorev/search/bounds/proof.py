@@ -17,7 +17,7 @@ from zerorev.kernels import bound_nodes, bound_tree
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Optimality
 from zerorev.model.proof_tree import ProofTree
-from zerorev.motion import outward_rates
+from zerorev.motion.joint_path import outward_rates
 from zerorev.search.bounds.log import logged_tree
 from zerorev.search.bounds.tree import Rules as BoundRules
 from zerorev.search.bounds.tree import Search, model_limits

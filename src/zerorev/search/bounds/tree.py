@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes, bound_tree, intervals
-from zerorev.kinematics import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry, Robot
+from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.bounds.rates import Formulas, formulas
 
 __all__ = ["Rules", "Search", "model_limits"]

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from zerorev.report.bracket import Bracket
-from zerorev.report.bracket import bracket as bracket_of
-from zerorev.report.palette import JOINT_COLOURS, signed
+from zerorev.report.scene.bracket import Bracket
+from zerorev.report.scene.bracket import bracket as bracket_of
+from zerorev.report.scene.palette import JOINT_COLOURS, signed
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled

@@ -12,17 +12,17 @@ from nicegui import ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
-from zerorev import report
 from zerorev.errors import InputError
-from zerorev.report.cell_data import arm_data, holes_data, reversals_data, slice_data, track_data
-from zerorev.report.motion_look import held
+from zerorev.report import scene
+from zerorev.report.scene.cell_data import arm_data, holes_data, reversals_data, slice_data, track_data
+from zerorev.report.scene.motion_look import held
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, shown
 from zerorev.web.throttle import throttled
 
 __all__ = ["CellView", "cell"]
 
-PLAYER = Path(report.__file__).parent / "static"
+PLAYER = Path(scene.__file__).parent / "static"
 THREE = Path(nicegui.__file__).parent / "elements" / "scene" / "dist"
 UNANSWERED = 1.0  # [s] after which a browser that said nothing is taken to be ready for more
 HOLES_APART = 0.4  # [s] between two drawings of the holes, which a running plan answers one after the other
@@ -34,7 +34,7 @@ class CellView(
     component=Path(__file__).parents[1] / "static" / "cell_view.js",
     esm={"nicegui-scene": str(THREE), "zerorev-cell": str(PLAYER)},
 ):
-    """The browser's half: `zerorev/report/static/cell.js`."""
+    """The browser's half: `zerorev/report/scene/static/cell.js`."""
 
 
 def cell(session: Session) -> CellView:

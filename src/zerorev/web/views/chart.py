@@ -10,7 +10,7 @@ import numpy as np
 from nicegui.element import Element
 
 from zerorev.model._arrays import Array
-from zerorev.report.palette import DASHES
+from zerorev.report.scene.palette import DASHES
 
 __all__ = ["INK", "LINE", "MUTED", "SURFACE", "Chart", "axis", "dashes", "pairs", "tip"]
 

@@ -12,7 +12,7 @@ from nicegui import ui
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.plan import Strokes
-from zerorev.report.terminal import duration, rate_text
+from zerorev.report.words.terminal import duration, rate_text
 from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session

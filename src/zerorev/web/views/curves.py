@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from zerorev.report.joint_range import joint_range
-from zerorev.report.motion_look import Curves, Look, held, look
-from zerorev.report.motion_look import curves as joint_curves
-from zerorev.report.palette import JOINT_COLOURS
+from zerorev.report.scene.joint_range import joint_range
+from zerorev.report.scene.motion_look import Curves, Look, held, look
+from zerorev.report.scene.motion_look import curves as joint_curves
+from zerorev.report.scene.palette import JOINT_COLOURS
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled

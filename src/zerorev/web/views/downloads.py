@@ -14,8 +14,8 @@ from typing import Any
 from nicegui import ui
 
 from zerorev.errors import NotExportableError, ZerorevError
-from zerorev.jobs import workers_for
 from zerorev.model.plan import UNFINISHED, Finding, Plan
+from zerorev.planning.job import workers_for
 from zerorev.program.export import Exported, exporting
 from zerorev.web import files
 from zerorev.web.computing import Work
@@ -163,7 +163,7 @@ def _figures(session: Session, work: Work, *, one: bool) -> None:
 
 
 def _replay(session: Session, work: Work) -> None:
-    from zerorev.report.replay import replay_page
+    from zerorev.report.scene.replay import replay_page
 
     plan, meshes = plan_of(session.state), session.state.meshes
     save = partial(ui.download.content, filename=f"{_stem(plan.name)}.replay.html", media_type="text/html")

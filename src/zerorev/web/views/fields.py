@@ -9,7 +9,7 @@ from typing import Any, ParamSpec
 from nicegui import ui
 
 from zerorev.errors import InputError
-from zerorev.model.text import FieldPath
+from zerorev.files.text import FieldPath
 from zerorev.web.session import Session
 
 __all__ = ["Fields", "built_when_opened", "ends", "form", "group", "number", "said"]

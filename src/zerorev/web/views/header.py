@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from zerorev.kinematics import wrist_offset
 from zerorev.model.job import Job
+from zerorev.motion.kinematics import wrist_offset
 from zerorev.web.session import Session
 from zerorev.web.state import State
 from zerorev.web.views.fields import built_when_opened

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from zerorev.report.hole_rows import HoleRow
+from zerorev.report.words.hole_rows import HoleRow
 
 __all__ = ["options", "widths"]
 

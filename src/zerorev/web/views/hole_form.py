@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.model.conversion import hole_from
+from zerorev.files.conversion import hole_from
+from zerorev.files.schema import HoleForm
+from zerorev.files.text import Document, FieldPath
+from zerorev.files.validation import problems
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
-from zerorev.model.schema import HoleForm
-from zerorev.model.text import Document, FieldPath
-from zerorev.model.validation import problems
-from zerorev.report.hole_rows import part_data
+from zerorev.report.words.hole_rows import part_data
 from zerorev.web.session import Session
 from zerorev.web.state import with_hole
 from zerorev.web.views.fields import Fields, ends, form, group, number

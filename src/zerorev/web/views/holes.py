@@ -13,8 +13,8 @@ from nicegui import events, ui
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan
-from zerorev.report.hole_rows import QUICK, HoleRow, hole_row, matching
-from zerorev.report.tables import hole_findings
+from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching
+from zerorev.report.words.tables import hole_findings
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, without_hole
 from zerorev.web.throttle import throttled

@@ -16,8 +16,8 @@ from zerorev.maps.chunks import Chunks
 from zerorev.maps.planes import AXES
 from zerorev.maps.run import local
 from zerorev.model.map_task import NEED_DEPTH, MapTask, Question
-from zerorev.report.map_slice import MapSlice, computed, plane_task, slice_of
-from zerorev.report.workspace_map import heading
+from zerorev.report.scene.map_slice import MapSlice, computed, plane_task, slice_of
+from zerorev.report.words.workspace_map import heading
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import State, with_cell

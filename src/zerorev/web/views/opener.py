@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 
 from nicegui import events, ui
 
-from zerorev.model.text import MAX_BYTES
+from zerorev.files.text import MAX_BYTES
 from zerorev.web import files
 from zerorev.web.opening import demo, shown
 from zerorev.web.session import Session

@@ -9,8 +9,8 @@ from html import escape
 from nicegui import background_tasks, events, ui
 
 from zerorev.errors import InputError
+from zerorev.files.sheet import COLUMNS, SheetRow, sheet_rows
 from zerorev.model.hole import Hole
-from zerorev.model.sheet import COLUMNS, SheetRow, sheet_rows
 from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import with_holes

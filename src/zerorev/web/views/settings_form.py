@@ -8,11 +8,11 @@ from typing import Any
 from nicegui import ui
 
 from zerorev.errors import InputError
-from zerorev.model.conversion import settings_data, settings_from
+from zerorev.files.conversion import settings_data, settings_from
+from zerorev.files.schema import SettingsForm
+from zerorev.files.text import Document, FieldPath
+from zerorev.files.validation import problems
 from zerorev.model.job import Job, Settings
-from zerorev.model.schema import SettingsForm
-from zerorev.model.text import Document, FieldPath
-from zerorev.model.validation import problems
 from zerorev.web.session import Session
 from zerorev.web.state import with_settings
 from zerorev.web.views.fields import Fields, ends, form, group, number

@@ -7,8 +7,8 @@ from html import escape
 from nicegui import ui
 
 from zerorev.model.job import Job
-from zerorev.report.headline import Headline, headline
-from zerorev.report.motion_look import look
+from zerorev.report.scene.motion_look import look
+from zerorev.report.words.headline import Headline, headline
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, shown
 from zerorev.web.throttle import throttled

@@ -13,15 +13,15 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
 from zerorev.errors import InputError
+from zerorev.files.units import m, rad
 from zerorev.model._arrays import finite
-from zerorev.model._units import m, rad
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.report import motion_look
-from zerorev.report import twist_map as maps
-from zerorev.report.twist_map_data import map_data, motion_data
+from zerorev.report.scene import motion_look
+from zerorev.report.scene import twist_map as maps
+from zerorev.report.scene.twist_map_data import map_data, motion_data
 from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import State, Steered, shown, steered

@@ -1,0 +1,102 @@
+"""What the commands `plan` and `depth` share: a job is answered hole by hole, the answers are kept and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing, nullcontext
+from dataclasses import replace
+from pathlib import Path
+
+from zerorev.files.checked_files import remember
+from zerorev.files.io import plan_to_json
+from zerorev.files.part import Part
+from zerorev.files.text import read_text
+from zerorev.model.job import Job
+from zerorev.model.plan import HolePlan, Plan, Strokes
+from zerorev.planning.job import answers, unanswered, workers_for
+from zerorev.report.words import terminal
+from zerorev.report.words.answer import Shown
+
+__all__ = ["run"]
+
+
+def run(
+    job: Job, strokes: Strokes, output: Path | None, workers: int | None, *, json: bool, figures: Path | None = None
+) -> bool:
+    """Answer a job, write and show the answers.
+
+    Args:
+        job: robot, tool, holes, settings.
+        strokes: those `asked` for, or of each hole the `deepest`.
+        output: where to write the plan or depth file, if anywhere.
+        workers: processes to run it on, or None for the usual number.
+        json: show what the file holds, and nothing else.
+        figures: folder for figures, if any.
+
+    Returns:
+        whether every hole has a checked motion and no finding is an error.
+
+    Raises:
+        KeyboardInterrupt: the user stopped it; says what is kept.
+        ZerorevError: as `answers` has it.
+    """
+    processes, head = workers_for(len(job.holes), workers), unanswered(job, strokes)
+    shown, kept = Shown(head), list[HolePlan]()
+    with nullcontext() if output is None else Part(output, head, job.holes) as part:
+        keep = figures is not None or (json and output is None)
+        fresh = part is not None and part.done == 0
+        _answer(job, strokes, processes, part, (shown.add, kept.append) if keep else (shown.add,))
+        if part is not None:
+            part.finish()
+    if output is not None and fresh:  # what was kept from another run was not checked by this one
+        remember(read_text(output, "the plan file that was just written"))
+    whole = replace(head, holes=tuple(kept))
+    if figures is not None:
+        _draw(whole, figures)
+    if json and output is not None:
+        terminal.print_file(output)
+    elif json:
+        terminal.print_json(plan_to_json(whole))
+    else:
+        shown.show()
+        what = "plan" if strokes == "asked" else "depths"
+        if output is not None:
+            terminal.say(f"{what} written to {output}")
+        if figures is not None:
+            terminal.say(f"figures written to {figures}")
+        if output is None:
+            terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
+    return shown.sound
+
+
+def _answer(
+    job: Job, strokes: Strokes, workers: int, part: Part | None, takers: tuple[Callable[[HolePlan], None], ...]
+) -> None:
+    """Hand out the answers of a job, with progress; an interruption says what is kept."""
+    total, before = len(job.holes), part.done if part else 0
+    if part and before:
+        terminal.note(f"going on after {before} of {total} holes in {part.path}")
+    try:
+        with (
+            terminal.progress("planning" if strokes == "asked" else "deepest strokes", total) as progress,
+            closing(answers(job, strokes=strokes, workers=workers, part=part)) as found,
+        ):
+            if progress:
+                progress(before, total)
+            for done, answer in enumerate(found, 1):
+                for take in takers:
+                    take(answer)
+                if progress and done > before:
+                    progress(done, total)
+    except KeyboardInterrupt:
+        if part and part.done:
+            kept = f"{part.done} of {total} holes are kept in {part.path}"
+            raise KeyboardInterrupt(f"interrupted; {kept}; the same command goes on from there") from None
+        raise
+
+
+def _draw(plan: Plan, folder: Path) -> None:
+    from zerorev.report.figures import write_figures
+
+    with terminal.progress("drawing", len(plan.holes)) as progress:
+        write_figures(plan, folder, progress=progress)

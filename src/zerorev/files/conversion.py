@@ -1,0 +1,203 @@
+"""Between the forms of the files and the nouns: robot, tool, frame, settings, hole; mm and degrees end here.
+
+`plan_data` and `plan_conversion` do the same for the plan, which is made of these.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import Any
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.files.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm, WeightsForm
+from zerorev.files.units import deg, deg_per_mm, m, mm, plain, rad, rad_per_m
+from zerorev.files.validation import inside
+from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
+from zerorev.model.hole import Hole, psi_zero_vector
+from zerorev.model.job import Settings, Weights
+from zerorev.model.profile import Profile
+from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
+from zerorev.model.tool import Tool
+
+__all__ = [
+    "frame_data",
+    "frame_from",
+    "given_profile",
+    "hole_from",
+    "robot_data",
+    "robot_from",
+    "settings_data",
+    "settings_from",
+    "tool_data",
+    "tool_from",
+]
+
+NOMINAL_DEPTH_MM = 1.0  # of a hole whose depth is to be found
+
+
+def robot_from(form: RobotForm, **sources: Any) -> Robot:
+    """The robot of a robot file or a plan file; `sources` as `Robot` has them."""
+    joints = form.joints
+    lengths: dict[str, Any] = {name: float(m(value)) for name, value in form.geometry_mm.model_dump().items()}
+    arm = ArmGeometry(**lengths, sign=six(joints.sign), offset=six(rad(joints.offset_deg)))
+    limits = JointLimits(rad(joints.lower_deg), rad(joints.upper_deg), rad(joints.speed_deg_s))
+    a, b, c, d, e, f = joints.names
+    return Robot(form.name, arm, limits, (a, b, c, d, e, f), form.manufacturer, form.model, **sources)
+
+
+def robot_data(robot: Robot) -> dict[str, Any]:
+    """The robot as a plan file holds it, with the fingerprint of its numbers."""
+    arm, limits = robot.arm, robot.limits
+    numbers: dict[str, Any] = plain(
+        {
+            "geometry_mm": {name: mm(getattr(arm, name)) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")},
+            "joints": {
+                "names": robot.joint_names,
+                "sign": [int(s) for s in arm.sign],
+                "offset_deg": deg(arm.offset),
+                "lower_deg": deg(limits.lower),
+                "upper_deg": deg(limits.upper),
+                "speed_deg_s": deg(limits.speed),
+            },
+        }
+    )
+    words = {"name": robot.name, "manufacturer": robot.manufacturer, "model": robot.model}
+    return words | numbers | {"sha256": _fingerprint(numbers)}
+
+
+def tool_from(form: ToolForm, **sources: Any) -> Tool:
+    """The tool of a tool file, a job or a plan file; `sources` as `Tool` has them."""
+    return Tool(form.name, transform(rotation_rpy(*rad(form.rpy_deg)), m(form.tcp_mm)), **sources)
+
+
+def tool_data(tool: Tool) -> dict[str, Any]:
+    """The tool as a plan file holds it, with the fingerprint of its numbers."""
+    T = tool.T_flange_tcp
+    numbers: dict[str, Any] = plain({"tcp_mm": mm(T[:3, 3]), "rpy_deg": deg(rpy_of(T[:3, :3]))})
+    return {"name": tool.name} | numbers | {"sha256": _fingerprint(numbers)}
+
+
+def _fingerprint(numbers: dict[str, Any]) -> str:
+    """SHA-256 of the numbers as a plan file has them, in a canonical JSON."""
+    return hashlib.sha256(json.dumps(numbers, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def frame_from(form: FrameForm) -> Array:
+    """T_base_part, shape (4, 4), translation [m]."""
+    return transform(rotation_rpy(*rad(form.rpy_deg)), m(form.xyz_mm))
+
+
+def frame_data(T_base_part: Array) -> dict[str, Any]:
+    """The frame as a plan file holds it."""
+    return dict(plain({"xyz_mm": mm(T_base_part[:3, 3]), "rpy_deg": deg(rpy_of(T_base_part[:3, :3]))}))
+
+
+def settings_from(form: SettingsForm) -> Settings:
+    """The settings of a job or of a plan."""
+    return Settings(
+        min_rate=float(rad_per_m(form.min_rate_deg_per_mm)),
+        min_rate_rule=form.min_rate_rule,
+        psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),
+        legs=form.legs,
+        max_twist=float(rad_per_m(form.max_twist_deg_per_mm)),
+        objective=form.objective if isinstance(form.objective, str) else "travel",
+        weights=() if isinstance(form.objective, str) else _weights(form.objective),
+        joint_stiffness=None if form.joint_stiffness_nm_per_rad is None else tuple(form.joint_stiffness_nm_per_rad),
+        reversal_weights=tuple(form.reversal_weights),
+        near_joints=None if form.near_joints_deg is None else tuple(rad(form.near_joints_deg).tolist()),
+        blend=float(m(form.blend_mm)),
+        blend_shortfall=None if form.blend_shortfall_mm is None else float(m(form.blend_shortfall_mm)),
+        deepen_corner=form.deepen_corner,
+        lead_in=float(m(form.lead_in_mm)),
+        keep_lead_in=form.keep_lead_in,
+        feed_plunge=float(m(form.feed_mm_s.plunge)),
+        feed_retract=float(m(form.feed_mm_s.retract)),
+        spindle_rpm=form.spindle_rpm,
+        proof_boxes=Settings.proof_boxes if form.proof_boxes is None else form.proof_boxes,
+    )
+
+
+def _weights(form: WeightsForm) -> Weights:
+    """The criteria that weigh anything."""
+    weights = tuple((name, weight) for name, weight in form.model_dump().items() if weight > 0)
+    if not weights:
+        raise InputError("no criterion weighs anything", where="objective", accepted="one weight or more above 0")
+    return weights
+
+
+def settings_data(settings: Settings) -> dict[str, Any]:
+    """The settings as a plan file holds them."""
+    data = {
+        "min_rate_deg_per_mm": deg_per_mm(settings.min_rate),
+        "min_rate_rule": settings.min_rate_rule,
+        "psi_bound_deg": None if settings.psi_bound is None else deg(settings.psi_bound),
+        "legs": settings.legs,
+        "max_twist_deg_per_mm": deg_per_mm(settings.max_twist),
+        "objective": dict(settings.weights) or settings.objective,
+        "joint_stiffness_nm_per_rad": settings.joint_stiffness,
+        "reversal_weights": settings.reversal_weights,
+        "near_joints_deg": None if settings.near_joints is None else deg(settings.near_joints),
+        "blend_mm": mm(settings.blend),
+        "blend_shortfall_mm": None if settings.blend_shortfall is None else mm(settings.blend_shortfall),
+        "deepen_corner": settings.deepen_corner,
+        "lead_in_mm": mm(settings.lead_in),
+        "keep_lead_in": settings.keep_lead_in,
+        "feed_mm_s": {"plunge": mm(settings.feed_plunge), "retract": mm(settings.feed_retract)},
+        "spindle_rpm": settings.spindle_rpm,
+        "proof_boxes": settings.proof_boxes,
+    }
+    return dict(plain(data))
+
+
+def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_part: Array) -> Hole:
+    """The hole of a job in the base frame, its spin counted from the job's reference.
+
+    One without a depth has a nominal one, and no given motion. Its numbers are those that a plan file will hold, to the
+    last digit, so that what is found for the hole of the job is found again for that of the file.
+
+    Raises:
+        InputError: a direction of zero length, a reference along the drill axis, a given motion that is none.
+    """
+    where, R = f"hole {form.id}", T_base_part[:3, :3]
+    depth_mm = plain(form.depth_mm or NOMINAL_DEPTH_MM)
+    target = m(plain(mm(T_base_part[:3, 3] + R @ m(form.target_mm))))
+    direction = np.array(plain(unit(R @ unit(form.direction, f"{where}, direction"), where)))
+    vector = reference if isinstance(reference, str) else np.array(reference)
+    with inside(where):
+        given = plain(form.standoff_mm), plain(form.psi_deg)
+        profile = None if form.depth_mm is None else given_profile(*given, depth_mm)
+    return Hole(
+        id=form.id,
+        target=target,
+        direction=direction,
+        depth=float(m(depth_mm)),
+        psi_zero=np.array(plain(psi_zero_vector(vector, target, direction, tool, T_base_part, where))),
+        profile=profile,
+        branch=form.branch,
+    )
+
+
+def given_profile(standoff_mm: list[float] | None, psi_deg: list[float] | None, depth_mm: float) -> Profile | None:
+    """A motion given beforehand: stand-offs [mm], spins [deg]; three spins alone are those at start, target and end.
+
+    Raises:
+        InputError: stand-offs without spins, another number of the one than of the other, not down and up again.
+    """
+    if psi_deg is None:
+        if standoff_mm is not None:
+            raise InputError("is missing beside standoff_mm", where="psi_deg", accepted="as many spins as stand-offs")
+        return None
+    if standoff_mm is None:
+        if len(psi_deg) != 3:
+            raise InputError(
+                f"has {len(psi_deg)} spins", where="psi_deg", accepted="three, or standoff_mm with as many entries"
+            )
+        standoff_mm = [depth_mm, 0.0, depth_mm]
+    if len(standoff_mm) != len(psi_deg):
+        raise InputError(
+            f"has {len(psi_deg)} spins for {len(standoff_mm)} stand-offs", where="psi_deg", accepted="as many as these"
+        )
+    return Profile(m(standoff_mm), rad(psi_deg))

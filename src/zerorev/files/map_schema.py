@@ -1,0 +1,127 @@
+"""The form of a map file: where to drill, in which directions, and what to ask there; millimetres and degrees."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Discriminator, Field, Tag
+
+from zerorev.files.schema import Depth, Form, Length, Name, Rate, SpinBound, Three, ToolForm, Twist, kind
+
+__all__ = ["MOST_CELLS", "ConeForm", "ConesForm", "MapFile", "RangeForm", "SphereForm", "TargetsForm"]
+
+MOST_CELLS = 100_000_000
+
+Quantity = Literal[
+    "deepest", "fewest_reversals", "least_travel", "greatest_margin", "twist_spread", "thesis_bisection",
+    "thesis_stepping",
+]  # fmt: skip
+Count = Annotated[int, Field(ge=1, le=100_000)]
+
+
+class RangeForm(Form):
+    """Evenly spaced values."""
+
+    start: Length = Field(description="a number [mm]: the first")
+    stop: Length = Field(description="a number [mm], start or more: the last, where a step meets it")
+    step: Depth = Field(description="a number above 0 [mm]: from one to the next")
+
+
+Axis = Annotated[
+    Annotated[list[Length], Field(min_length=1, fail_fast=True), Tag("<list>")]
+    | Annotated[RangeForm, Tag("<mapping>")],
+    Discriminator(kind),
+]
+AXIS = "one number or more in a list, or a mapping of start, stop and step [mm]"
+
+
+class TargetsForm(Form):
+    """A plane, a box or a line of targets."""
+
+    x_mm: Axis = Field(description=f"{AXIS}: X of the targets, base frame")
+    y_mm: Axis = Field(description=f"{AXIS}: Y of the targets, base frame")
+    z_mm: Axis = Field(description=f"{AXIS}: Z of the targets, base frame")
+
+
+class ConeForm(Form):
+    """Directions within a cone."""
+
+    axis: Three = Field(description="three numbers, not all 0: the middle direction, base frame, of any length")
+    half_angle_deg: Annotated[float, Field(gt=0, le=180)] = Field(
+        description="a number above 0, 180 at most [deg]: from the axis to the rim"
+    )
+    count: Count = Field(description="a whole number, 1 or more: directions; the first is the axis")
+
+
+class ConesForm(Form):
+    """Directions given as a cone."""
+
+    cone: ConeForm = Field(description="a mapping of axis, half_angle_deg and count")
+
+
+class SphereForm(Form):
+    """Directions all round."""
+
+    sphere: Count = Field(description="a whole number, 1 or more: directions, spread evenly over the sphere")
+
+
+def _directions(value: object) -> str | None:
+    tag = kind(value)
+    return ("<cone>" if "cone" in value else "<sphere>") if isinstance(value, dict) else tag
+
+
+class MapFile(Form):
+    """A map file, YAML: a robot, a tool, targets, directions, and what is asked of each."""
+
+    model_config = ConfigDict(title="zerorev map")
+
+    format: Literal["zerorev.map_file/1"] = Field(default="zerorev.map_file/1", description="zerorev.map_file/1")
+    robot: Name = Field(description="text: a name that ships with zerorev, or the path of a robot file")
+    tool: Annotated[Annotated[Name, Tag("<text>")] | Annotated[ToolForm, Tag("<mapping>")], Discriminator(kind)] = (
+        Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
+    )
+    psi_reference: Annotated[
+        Annotated[Literal["base_y", "nearest_base"], Tag("<text>")] | Annotated[Three, Tag("<list>")],
+        Discriminator(kind),
+    ] = Field(
+        default="base_y",
+        description="base_y, nearest_base, or three numbers (a vector in the base frame): the direction of Y_tcp at"
+        " psi = 0",
+    )
+    targets: TargetsForm | None = Field(default=None, description="a mapping of x_mm, y_mm and z_mm; or points instead")
+    points: Name | None = Field(
+        default=None,
+        description="the path of a CSV file with the columns id,x_mm,y_mm,z_mm; or targets instead",
+    )
+    directions: Annotated[
+        Annotated[list[Three], Field(min_length=1), Tag("<list>")]
+        | Annotated[ConesForm, Tag("<cone>")]
+        | Annotated[SphereForm, Tag("<sphere>")],
+        Discriminator(_directions),
+    ] = Field(description="a list of vectors into the material, base frame; or a mapping of cone, or of sphere")
+    quantity: Quantity = Field(
+        default="deepest",
+        description="deepest, fewest_reversals, least_travel, greatest_margin, twist_spread, thesis_bisection or"
+        " thesis_stepping",
+    )
+    depth_mm: Depth | None = Field(
+        default=None,
+        description="a number above 0 [mm]: the stroke; for fewest_reversals, least_travel and greatest_margin alone",
+    )
+    legs: Literal["straight", "free"] = Field(
+        default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
+    )
+    min_rate_deg_per_mm: Rate = Field(
+        default=0.01,
+        description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
+    )
+    psi_bound_deg: SpinBound | None = Field(
+        default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
+    )
+    max_twist_deg_per_mm: Twist = Field(
+        default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
+    )
+    seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = Field(
+        default=None,
+        description="a whole number, 0 or more: of the swarm; for thesis_bisection and thesis_stepping alone",
+    )

@@ -1,0 +1,73 @@
+"""A job file made from another: its part somewhere else, or some of its holes alone; all else as it was."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+from zerorev.files.output import check_file, write_text
+from zerorev.files.schema import HoleForm
+from zerorev.files.text import csv_rows, read_text
+from zerorev.files.units import deg, mm, plain
+from zerorev.files.yaml_text import yaml_document, yaml_text
+from zerorev.model._arrays import Array, rpy_of
+
+__all__ = ["frame_text", "write_job"]
+
+COLUMNS = ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
+
+
+def frame_text(T_base_part: Array) -> dict[str, list[float]]:
+    """A part frame, shape (4, 4) [m], as a job file has it: `xyz_mm` and `rpy_deg`."""
+    frame = {
+        "xyz_mm": mm(T_base_part[:3, 3]).round(6) + 0.0,
+        "rpy_deg": deg(rpy_of(T_base_part[:3, :3])).round(9) + 0.0,
+    }
+    return dict(plain(frame))
+
+
+def write_job(
+    target: Path, source: Path, *, T_base_part: Array | None = None, ids: Collection[str] | None = None, note: str = ""
+) -> None:
+    """Write a job file with the keys of another, whole or not at all; relative paths in it lead where they led.
+
+    Args:
+        target: where to.
+        source: a job file that can be read.
+        T_base_part: where the part stands, shape (4, 4); None: where it stood.
+        ids: of the holes to keep; None: all.
+        note: a comment at its head.
+
+    Raises:
+        OutputError: it cannot be written, or it is the file that is read.
+    """
+    check_file(target, source)
+    data: dict[str, Any] = dict(yaml_document(read_text(source, "a job file (YAML)"), str(source)).data)
+    data.setdefault("name", source.stem)
+    if ids is not None:
+        data["holes"] = [hole for hole in _listed(data["holes"], source.parent) if str(hole["id"]) in ids]
+    if T_base_part is not None:
+        data["part_frame"] = frame_text(T_base_part)
+    start, end = source.resolve().parent, target.resolve().parent
+    for key in ("robot", "tool", "holes"):
+        value = data[key]
+        if isinstance(value, str) and (start / value).is_file() and not Path(value).is_absolute():
+            there = os.path.relpath(start / value, end)
+            data[key] = there if "/" in there or "\\" in there or key == "holes" else f"./{there}"
+    head = "".join(f"# {line}\n" for line in note.splitlines())
+    write_text(target, head + yaml_text(data))
+
+
+def _listed(holes: Any, folder: Path) -> list[dict[str, Any]]:
+    """The holes of a job as its list has them, also where they stand in a CSV file."""
+    if not isinstance(holes, str):
+        return list(holes)
+    path = folder / holes
+    listed = []
+    for _, cells in csv_rows(read_text(path, "a CSV file of holes"), str(path), "id", COLUMNS, ("depth_mm",)):
+        hole = {"id": cells["id"], "target_mm": [cells[name] for name in COLUMNS[:3]],
+                "direction": [cells[name] for name in COLUMNS[3:6]], "depth_mm": cells.get("depth_mm")}  # fmt: skip
+        listed.append({key: value for key, value in hole.items() if key in HoleForm.model_fields and value is not None})
+    return listed

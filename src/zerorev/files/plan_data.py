@@ -1,0 +1,217 @@
+"""From the plan to the plain data of its file; millimetres and degrees begin here. `plan_conversion` goes back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
+from zerorev.files.plan_schema import DepthFile, PlanFile
+from zerorev.files.units import deg, deg_per_mm, mm, plain
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.plan import (
+    Baseline,
+    Certificate,
+    HolePlan,
+    Measures,
+    Motion,
+    Optimality,
+    Plan,
+    Score,
+    Strokes,
+    Verification,
+    Within,
+)
+
+__all__ = ["FORMS", "MOTION", "RPM", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
+
+FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "deepest": DepthFile}
+"""What file a plan becomes, by its strokes."""
+
+RPM = 30 / np.pi  # [rev/min] of 1 rad/s
+
+MOTION = ("branch", "standoff_mm", "psi_deg", "joints_deg")
+SCORE = (
+    "reversals",
+    "reversals_per_joint",
+    "events",
+    "travel_deg",
+    "min_rate_deg_per_mm",
+    "mean_rate_deg_per_mm",
+    "limit_distance_deg",
+)
+
+
+def plan_data(plan: Plan) -> dict[str, Any]:
+    """The plan as plain data, in the form of a plan file or, where its strokes are the deepest, of a depth file."""
+    head = plan_head(plan)
+    findings = head.pop("findings")
+    return head | {"holes": [answer_data(hole, plan.strokes) for hole in plan.holes], "findings": findings}
+
+
+def plan_head(plan: Plan) -> dict[str, Any]:
+    """What the file says of all holes; their list goes before the last entry, `findings`."""
+    return {
+        "format": FORMS[plan.strokes].model_fields["format"].description,
+        "name": plan.name,
+        "robot": robot_data(plan.robot),
+        "tool": tool_data(plan.tool),
+        "part_frame": frame_data(plan.T_base_part),
+        "settings": settings_data(plan.settings),
+        "findings": [vars(finding) for finding in plan.findings],
+    }
+
+
+def answer_data(answer: HolePlan, strokes: Strokes) -> dict[str, Any]:
+    """One hole's answer as it stands in the file."""
+    data: dict[str, Any] = plain(_hole_data(answer))
+    return data if strokes == "asked" else {"id": data["id"], "deepest_mm": data["deepest_mm"], "plan": data}
+
+
+def asked_data(hole: Hole) -> dict[str, Any]:
+    """What was asked of one hole."""
+    return {
+        "id": hole.id,
+        "target_mm": mm(hole.target),
+        "direction": hole.direction,
+        "depth_mm": mm(hole.depth),
+        "psi_zero": hole.psi_zero,
+        "given": _given_data(hole),
+    }
+
+
+def _hole_data(answer: HolePlan) -> dict[str, Any]:
+    return {
+        **asked_data(answer.hole),
+        "deepest_mm": None if answer.deepest is None else mm(answer.deepest),
+        "deepest_at_most_mm": None if answer.deepest_at_most is None else mm(answer.deepest_at_most),
+        "status": answer.status,
+        **_motion_data(answer.motion),
+        **_score_data(answer.score),
+        **_critical_data(answer.critical_rates),
+        "wrist_offset_mm": mm(answer.wrist_offset),
+        "optimality": _optimality_data(answer.optimality),
+        "baseline": _baseline_data(answer.baseline),
+        "verified": _verified_data(answer.verified),
+        "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
+        "certified_within": _within_data(answer.certified_within) if answer.certified_within else None,
+        "criteria": _criteria_data(answer.measures) if answer.measures else None,
+        "findings": [vars(finding) for finding in answer.findings],
+    }
+
+
+def _critical_data(kappa: Array | None) -> dict[str, Any]:
+    if kappa is None:
+        return {"critical_rates_deg_per_mm": None, "twist_spread_deg_per_mm": None}
+    # of the digits that are written, so that a file that is read and written again stays the same
+    written = plain(deg_per_mm(kappa))
+    return {"critical_rates_deg_per_mm": written, "twist_spread_deg_per_mm": twist_spread(written)}
+
+
+def twist_spread(written: Sequence[float | None] | None) -> float | None:
+    """Greatest less least of the critical rates as a file has them; None where one is missing."""
+    known = [rate for rate in written or () if rate is not None]
+    return float(plain(max(known) - min(known))) if written is not None and len(known) == len(written) else None
+
+
+def _given_data(hole: Hole) -> dict[str, Any] | None:
+    if hole.profile is None and hole.branch is None:
+        return None
+    standoff_mm = None if hole.profile is None else mm(hole.profile.standoff)
+    psi_deg = None if hole.profile is None else deg(hole.profile.psi)
+    return {"standoff_mm": standoff_mm, "psi_deg": psi_deg, "branch": hole.branch}
+
+
+def _motion_data(motion: Motion | None) -> dict[str, Any]:
+    if motion is None:
+        return dict.fromkeys(MOTION)
+    joints, corner = deg(motion.joints), motion.profile.corner
+    return {
+        "branch": motion.branch,
+        "standoff_mm": mm(motion.profile.standoff),
+        "psi_deg": deg(motion.profile.psi),
+        "joints_deg": {"start": joints[0], "target": joints[corner], "end": joints[-1], "breakpoints": joints},
+    }
+
+
+def _score_data(score: Score | None) -> dict[str, Any]:
+    if score is None:
+        return dict.fromkeys(SCORE)
+    return {
+        "reversals": score.reversals,
+        "reversals_per_joint": score.reversals_per_joint,
+        "events": [{"joint": e.joint, "leg": e.leg, "standoff_mm": mm(e.standoff)} for e in score.events],
+        "travel_deg": deg(score.travel),
+        "min_rate_deg_per_mm": deg_per_mm(score.min_rate),
+        "mean_rate_deg_per_mm": deg_per_mm(score.mean_rate),
+        "limit_distance_deg": deg(score.limit_distance),
+    }
+
+
+def _baseline_data(baseline: Baseline | None) -> dict[str, Any] | None:
+    if baseline is None:
+        return None
+    return {
+        "reversals": baseline.reversals,
+        "reversals_per_joint": baseline.reversals_per_joint,
+        "travel_deg": deg(baseline.travel),
+    }
+
+
+def _optimality_data(optimality: Optimality | None) -> dict[str, Any] | None:
+    if optimality is None:
+        return None
+    travel, gap = optimality.travel_at_least, optimality.gap
+    return {
+        "reversals_at_least": optimality.reversals_at_least,
+        "travel_at_least_deg": None if travel is None else deg(travel),
+        "gap_percent": None if gap is None else 100 * gap,
+        "proven": optimality.proven,
+    }
+
+
+def _verified_data(verified: Verification | None) -> dict[str, Any] | None:
+    if verified is None:
+        return None
+    return {
+        "passed": verified.passed,
+        "samples": verified.samples,
+        "blend_samples": verified.blend_samples,
+        "reversals_per_joint": verified.reversals_per_joint,
+        "max_position_error_mm": mm(verified.max_position_error),
+        "max_rotation_error_deg": deg(verified.max_rotation_error),
+        "max_joint_step_deg": deg(verified.max_joint_step),
+        "min_limit_distance_deg": deg(verified.min_limit_distance),
+        "failures": verified.failures,
+    }
+
+
+def _certificate_data(certificate: Certificate) -> dict[str, Any]:
+    return {
+        "verdict": certificate.verdict,
+        "pieces": certificate.pieces,
+        "min_rate_deg_per_mm": deg_per_mm(certificate.min_rate),
+        "blend_min_rate_deg_per_mm": deg_per_mm(certificate.blend_min_rate),
+        "limit_distance_deg": deg(certificate.limit_distance),
+        "reasons": certificate.reasons,
+    }
+
+
+def _within_data(within: Within) -> dict[str, Any]:
+    return {"mm": mm(within.position), "deg": deg(within.rotation)}
+
+
+def _criteria_data(measures: Measures[float]) -> dict[str, Any]:
+    return {
+        "travel_deg": deg(measures.travel),
+        "margin_deg_per_mm": deg_per_mm(measures.margin),
+        "plunge_rotation_deg": deg(measures.plunge_rotation),
+        "tool_speed_change_rpm": measures.tool_speed_change * RPM,
+        "limit_distance": measures.limit_distance,
+        "compliance_axial_um_per_n": measures.compliance_axial * 1e6,
+        "compliance_lateral_um_per_n": measures.compliance_lateral * 1e6,
+        "manipulability": measures.manipulability,
+    }

@@ -1,0 +1,334 @@
+"""The forms of the files: what may stand in a robot, tool or job file, in millimetres and degrees.
+
+Each field's description says what is accepted; error messages (`zerorev.files.validation`) and the published JSON
+Schemas (docs/schemas) both show it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+
+from zerorev.visible import one_line
+
+__all__ = [
+    "MOST_BREAKPOINTS",
+    "MOST_HOLES",
+    "Angle",
+    "Depth",
+    "Form",
+    "FrameForm",
+    "HoleForm",
+    "JobFile",
+    "Length",
+    "Many",
+    "Name",
+    "NotNegative",
+    "PlaceMm",
+    "Positive",
+    "Rate",
+    "RobotFile",
+    "RobotForm",
+    "SettingsForm",
+    "SpinBound",
+    "Text",
+    "Three",
+    "ToolFile",
+    "ToolForm",
+    "Twist",
+    "kind",
+]  # fmt: skip
+
+Entry = TypeVar("Entry")
+
+MOST_HOLES = 100_000
+MOST_BREAKPOINTS = 10_000  # of a motion
+
+
+def _id_text(value: object) -> object:
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def kind(value: object) -> str | None:
+    """The tag of a union's member; `validation.TAGS` has all of them, so that messages can leave them out of a path."""
+    tags: dict[type, str] = {str: "<text>", list: "<list>", dict: "<mapping>"}
+    return tags.get(type(value))
+
+
+Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
+Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
+Text = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
+# no more is said of a long list than what is wrong with the first bad entry
+Many = Annotated[list[Entry], Field(fail_fast=True)]
+
+# Far beyond any arm, and near enough that no number overflows and no search takes hours.
+Length = Annotated[float, Field(ge=-1e6, le=1e6)]  # [mm]
+Depth = Annotated[float, Field(gt=0, le=1e6)]  # [mm]
+Stretch = Annotated[float, Field(ge=0, le=1e6)]  # [mm]
+Angle = Annotated[float, Field(ge=-36_000, le=36_000)]  # [deg]
+SpinBound = Annotated[float, Field(gt=0, le=3_600)]  # [deg]
+Rate = Annotated[float, Field(ge=0, le=1e4)]  # [deg/mm]
+Twist = Annotated[float, Field(gt=0, le=1e4)]  # [deg/mm]
+Positive = Annotated[float, Field(gt=0, le=1e12)]
+NotNegative = Annotated[float, Field(ge=0, le=1e15)]
+Measured = Annotated[float, Field(ge=-1e15, le=1e15)]
+
+Three = Annotated[list[float], Field(min_length=3, max_length=3)]
+PlaceMm = Annotated[list[Length], Field(min_length=3, max_length=3)]
+AnglesDeg = Annotated[list[Angle], Field(min_length=3, max_length=3)]
+SixDeg = Annotated[list[Angle], Field(min_length=6, max_length=6)]
+SixPositive = Annotated[list[Positive], Field(min_length=6, max_length=6)]
+StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
+SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
+SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
+Branch = Annotated[int, Field(ge=0, le=7)]
+
+
+class Form(BaseModel):
+    """Strict: text is no number, true is no 1, NaN is nothing at all, and an unknown key is an error."""
+
+    # built at the first use, so that `import zerorev` need not wait for it
+    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)
+
+
+# --- robot and tool ---------------------------------------------------------------------------------------------------
+
+
+class GeometryForm(Form):
+    """The seven lengths of Brandstoetter, Angerer, Hofbaur (2014), fig. 1."""
+
+    a1: Length = Field(description="a number [mm]: shoulder forward of axis 1")
+    a2: Length = Field(description="a number [mm]: elbow offset")
+    b: Length = Field(description="a number [mm]: lateral offset")
+    c1: Length = Field(description="a number [mm]: height of the shoulder")
+    c2: Depth = Field(description="a number above 0 [mm]: upper arm")
+    c3: Length = Field(description="a number [mm]: forearm")
+    c4: Length = Field(description="a number [mm]: wrist centre to flange")
+
+
+class JointsForm(Form):
+    """The joints as the controller shows them; model angle = sign * controller angle - offset."""
+
+    names: Annotated[list[Name], Field(min_length=6, max_length=6)] = Field(description="six names, e.g. A1 to A6")
+    sign: Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)] = Field(
+        description="six of 1 or -1"
+    )
+    offset_deg: SixDeg = Field(description="six numbers [deg]")
+    lower_deg: SixDeg = Field(description="six numbers [deg]: the lower joint limits")
+    upper_deg: SixDeg = Field(description="six numbers [deg]: the upper joint limits")
+    speed_deg_s: SixPositive = Field(description="six numbers above 0 [deg/s]: the greatest joint speeds")
+
+
+class RobotForm(Form):
+    """The numbers of a robot."""
+
+    name: Name = Field(description="text: how jobs call the robot")
+    manufacturer: Text = Field(default="", description="text: who makes it")
+    model: Text = Field(default="", description="text: the maker's name of it")
+    geometry_mm: GeometryForm = Field(description="a mapping of the seven lengths a1, a2, b, c1, c2, c3, c4 [mm]")
+    joints: JointsForm = Field(
+        description="a mapping of names, sign, offset_deg, lower_deg, upper_deg and speed_deg_s, six entries each"
+    )
+
+
+class RobotFile(RobotForm):
+    """A robot file, YAML."""
+
+    format: Literal["zerorev.robot/1"] = Field(description="zerorev.robot/1")
+    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
+    second_sources: Many[Text] = Field(default=[], description="a list of text: what a second source says")
+    caveats: Many[Text] = Field(default=[], description="a list of text: what to know before trusting the numbers")
+
+
+class ToolForm(Form):
+    """The numbers of a tool: flange to TCP, Z_tcp against the plunge."""
+
+    name: Name = Field(default="tool", description="text: how jobs call the tool")
+    tcp_mm: PlaceMm = Field(description="three numbers [mm]: the TCP in the flange frame")
+    rpy_deg: AnglesDeg = Field(
+        description="three numbers [deg]: roll, pitch, yaw of the TCP; R = Rz(yaw) Ry(pitch) Rx(roll)"
+    )
+
+
+class ToolFile(ToolForm):
+    """A tool file, YAML."""
+
+    format: Literal["zerorev.tool/1"] = Field(description="zerorev.tool/1")
+    name: Name = Field(description="text: how jobs call the tool")
+    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
+
+
+# --- job --------------------------------------------------------------------------------------------------------------
+
+
+class FrameForm(Form):
+    """A frame in the base frame."""
+
+    xyz_mm: PlaceMm = Field(default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, base frame")
+    rpy_deg: AnglesDeg = Field(
+        default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
+    )
+
+
+class FeedForm(Form):
+    """Feeds of the tip."""
+
+    plunge: Positive = Field(default=5.0, description="a number above 0 [mm/s]: feed of the plunge")
+    retract: Positive = Field(default=20.0, description="a number above 0 [mm/s]: feed of the retract")
+
+
+class WeightsForm(Form):
+    """What a motion is judged by beside its reversals: the weighted sum of these is to be least."""
+
+    travel: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the joint travel")
+    margin: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the slowest joint")
+    plunge_rotation: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the tool's spin during the plunge"
+    )
+    tool_speed_change: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the change of the drill's speed by the spin"
+    )
+    limit_distance: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the distance to the joint limits"
+    )
+    compliance_axial: NotNegative = Field(
+        default=0.0,
+        description="a number, 0 or more: weight of the give along the drill axis; needs joint_stiffness_nm_per_rad",
+    )
+    compliance_lateral: NotNegative = Field(
+        default=0.0,
+        description="a number, 0 or more: weight of the give across the drill axis; needs joint_stiffness_nm_per_rad",
+    )
+    manipulability: NotNegative = Field(
+        default=0.0, description="a number, 0 or more: weight of the distance from singular postures"
+    )
+
+
+class SettingsForm(Form):
+    """How to plan and how to run the motion."""
+
+    min_rate_deg_per_mm: Rate = Field(
+        default=0.01,
+        description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
+    )
+    min_rate_rule: Literal["pointwise", "mean"] = Field(
+        default="pointwise",
+        description="pointwise (the least motion at every point) or mean (on the average of each leg)",
+    )
+    psi_bound_deg: SpinBound | None = Field(
+        default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
+    )
+    legs: Literal["straight", "free"] = Field(
+        default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
+    )
+    max_twist_deg_per_mm: Twist = Field(
+        default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
+    )
+    objective: Annotated[
+        Annotated[Literal["travel", "margin", "plunge_rotation"], Tag("<text>")]
+        | Annotated[WeightsForm, Tag("<mapping>")],
+        Discriminator(kind),
+    ] = Field(
+        default="travel",
+        description="travel (least joint travel), margin (greatest slowest motion) or plunge_rotation (least spin "
+        "during the plunge), or a mapping of criteria to weights; decides among plans of equal reversals",
+    )
+    joint_stiffness_nm_per_rad: SixPositive | None = Field(
+        default=None,
+        description="six numbers above 0 [N m/rad]: stiffness of the joints, for the compliance at the tip; or null: "
+        "unknown",
+    )
+    reversal_weights: SixPositive = Field(
+        default=[1.0] * 6, description="six numbers above 0: what a reversal of each joint costs"
+    )
+    near_joints_deg: SixDeg | None = Field(
+        default=None,
+        description="six controller angles [deg] to which free turns are chosen nearest; or null: the turns farthest "
+        "from the limits",
+    )
+    blend_mm: Stretch = Field(default=1.0, description="a number, 0 or more [mm]: radius of the blend at the corner")
+    blend_shortfall_mm: Stretch | None = Field(
+        default=None,
+        description="a number from 0 to blend_mm [mm]: depth lost to the blend as measured; or null: half of blend_mm",
+    )
+    deepen_corner: bool = Field(
+        default=False,
+        description="true or false: whether the corner lies deeper by the shortfall, so that the depth is met",
+    )
+    lead_in_mm: Stretch = Field(
+        default=5.0, description="a number, 0 or more [mm]: length run along the plunge leg before the drill enters"
+    )
+    keep_lead_in: bool = Field(
+        default=False,
+        description="true or false: whether only motions count whose whole lead-in runs without a reversal; false: it "
+        "is shortened where it cannot",
+    )
+    feed_mm_s: FeedForm = Field(default=FeedForm(), description="a mapping of plunge and retract, each above 0 [mm/s]")
+    spindle_rpm: Positive | None = Field(
+        default=None,
+        description="a number above 0 [rev/min]: speed of the spindle; or null: the program need not know it",
+    )
+    proof_boxes: Annotated[int, Field(ge=0, le=100_000_000)] | None = Field(
+        default=None,
+        description="a whole number, 0 or more: how many boxes of legs each hole's proof may examine; 0: no proof;"
+        " or null: 100000 in a job, and 0 in a file of answers, which is then of a time without proofs",
+    )
+
+
+class HoleForm(Form):
+    """One hole of a job, in the part frame."""
+
+    id: Id = Field(description="text or a whole number: how the hole is called; one line, 1 to 100 characters")
+    target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, part frame")
+    direction: Three = Field(description="three numbers, not all 0: into the material, part frame, of any length")
+    depth_mm: Depth | None = Field(
+        default=None, description="a number above 0 [mm]: the stroke; zerorev depth alone does without it"
+    )
+    psi_deg: SpinsDeg | None = Field(
+        default=None,
+        description="three numbers [deg]: spins at start, target and end of a motion to be evaluated, not searched; "
+        "or more, with standoff_mm beside them",
+    )
+    standoff_mm: StandoffsMm | None = Field(
+        default=None,
+        description="as many numbers [mm] as psi_deg: stand-offs in order of motion, strictly falling from depth_mm to "
+        "the target, then strictly rising to depth_mm; left out, they are depth_mm, 0, depth_mm",
+    )
+    branch: Branch | None = Field(
+        default=None,
+        description="a whole number from 0 to 7: the IK branch of the given motion, or the only one to search",
+    )
+
+
+class JobFile(SettingsForm):
+    """A job file, YAML: a robot, a tool, holes, and how they are to be drilled."""
+
+    model_config = ConfigDict(title="zerorev job")
+
+    format: Literal["zerorev.job/1"] = Field(default="zerorev.job/1", description="zerorev.job/1")
+    name: Name | None = Field(default=None, description="text: names the program; left out, it is the file's name")
+    robot: Name = Field(description="text: a name that ships with zerorev, or the path of a robot file")
+    tool: Annotated[Annotated[Name, Tag("<text>")] | Annotated[ToolForm, Tag("<mapping>")], Discriminator(kind)] = (
+        Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
+    )
+    part_frame: FrameForm = Field(
+        default=FrameForm(), description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame"
+    )
+    psi_reference: Annotated[
+        Annotated[Literal["base_y", "nearest_base", "part_x", "part_y"], Tag("<text>")]
+        | Annotated[Three, Tag("<list>")],
+        Discriminator(kind),
+    ] = Field(
+        default="base_y",
+        description="base_y, nearest_base, part_x, part_y, or three numbers (a vector in the part frame): "
+        "the direction of Y_tcp at psi = 0",
+    )
+    holes: Annotated[
+        Annotated[list[HoleForm], Field(min_length=1, max_length=MOST_HOLES, fail_fast=True), Tag("<list>")]
+        | Annotated[Name, Tag("<text>")],
+        Discriminator(kind),
+    ] = Field(
+        description="a list of one hole or more, or the path of a CSV file with the columns "
+        "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"
+    )

@@ -1,0 +1,1 @@
+"""What a motion does: kinematics, the joint path, evaluation, criteria, critical rates."""

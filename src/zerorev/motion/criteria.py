@@ -1,0 +1,280 @@
+"""What a motion is judged by beside its reversals: one small class a criterion, and their weighted sum.
+
+`measure` takes what the criteria need of an evaluated motion, in its own units; a criterion turns one of these figures
+into a cost that is about 0 for the best and about 1 for a poor motion, so that weights mean the same for all of them.
+Reversals and the motion threshold are not weighed against any of this: they come first (theory §6). The thesis weighs
+them by 6/7 against 1/7 (eq. 4.7), which comes to the same, and `thesis_objective` is that sum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.plan import Measures, Score, V
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion.evaluation import Evaluation, steady_rates
+from zerorev.motion.joint_path import joints_along, sample_distances
+from zerorev.motion.kinematics import jacobian
+
+__all__ = [
+    "CRITERIA",
+    "ComplianceAxial",
+    "ComplianceLateral",
+    "Criterion",
+    "LimitDistance",
+    "Manipulability",
+    "Margin",
+    "Objective",
+    "PlungeRotation",
+    "Reversals",
+    "ToolSpeedChange",
+    "Travel",
+    "compliance",
+    "from_singular",
+    "manipulability",
+    "measure",
+    "objective_of",
+    "thesis_objective",
+]
+
+SAMPLES = 400  # poses of a motion at which the compliance and the manipulability are looked at
+
+
+class Criterion(Protocol):
+    """One aspect of a motion, as a number between 0 (best) and about 1."""
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion, or of each of many."""
+
+
+@dataclass(frozen=True)
+class Travel:
+    """Share of six full turns: theta_trv / (6 * 360 deg) (eq. 4.7, second term)."""
+
+    scale: float = 12 * np.pi  # [rad]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return motion.travel / self.scale
+
+
+@dataclass(frozen=True)
+class Margin:
+    """How slow the slowest joint is: 1 at rest, 0 where it moves by 0.1 deg/mm, below 0 where it moves faster."""
+
+    scale: float = float(np.deg2rad(100.0))  # [rad/m]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return 1 - motion.margin / self.scale
+
+
+@dataclass(frozen=True)
+class PlungeRotation:
+    """Share of half a turn by which the tool is spun while it cuts."""
+
+    scale: float = np.pi  # [rad]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return motion.plunge_rotation / self.scale
+
+
+@dataclass(frozen=True)
+class ToolSpeedChange:
+    """Change of the drill's speed by the spin, counted in 10 rev/min, the thesis' example (eq. 5.4)."""
+
+    scale: float = np.pi / 3  # [rad/s]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return motion.tool_speed_change / self.scale
+
+
+@dataclass(frozen=True)
+class LimitDistance:
+    """How near a joint comes to its limits: 1 at a limit, 0 in the middle of its range."""
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return 1 - motion.limit_distance
+
+
+@dataclass(frozen=True)
+class ComplianceAxial:
+    """Greatest give of the tip to a thrust along the drill axis, counted in 10 um/N."""
+
+    scale: float = 10e-6  # [m/N]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return motion.compliance_axial / self.scale
+
+
+@dataclass(frozen=True)
+class ComplianceLateral:
+    """Greatest give of the tip to a force across the drill axis, the way it gives most, counted in 10 um/N."""
+
+    scale: float = 10e-6  # [m/N]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return motion.compliance_lateral / self.scale
+
+
+@dataclass(frozen=True)
+class Manipulability:
+    """How near the arm comes to a singular posture: 1 in one, and never 0."""
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion."""
+        return 1 - motion.manipulability
+
+
+CRITERIA: dict[str, Criterion] = {
+    "travel": Travel(),
+    "margin": Margin(),
+    "plunge_rotation": PlungeRotation(),
+    "tool_speed_change": ToolSpeedChange(),
+    "limit_distance": LimitDistance(),
+    "compliance_axial": ComplianceAxial(),
+    "compliance_lateral": ComplianceLateral(),
+    "manipulability": Manipulability(),
+}
+"""The criteria by the names that a job file gives them."""
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A weighted sum of criteria.
+
+    Attributes:
+        terms: weight and criterion, each.
+    """
+
+    terms: tuple[tuple[float, Criterion], ...]
+
+    def __call__(self, motion: Measures[V]) -> V:
+        """Cost of the motion, or of each of many."""
+        (weight, criterion), *others = self.terms
+        cost = weight * criterion(motion)
+        for weight, criterion in others:
+            cost = cost + weight * criterion(motion)
+        return cost
+
+
+def objective_of(settings: Settings) -> Objective:
+    """What the settings ask to be least: the weighted sum, or the one criterion that the objective names."""
+    weights = settings.weights or ((settings.objective, 1.0),)
+    return Objective(tuple((weight, CRITERIA[name]) for name, weight in weights))
+
+
+def measure(robot: Robot, tool: Tool, hole: Hole, evaluation: Evaluation, settings: Settings) -> Measures[float]:
+    """What the criteria measure of a motion that can be run, on its legs.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: what is drilled.
+        evaluation: of the motion, with a score.
+        settings: for the rule of the motion threshold, the feed of the plunge and the stiffness of the joints.
+    """
+    motion, score = evaluation.motion, evaluation.score
+    assert motion is not None
+    assert score is not None
+    profile, limits, steady = motion.profile, robot.limits, steady_rates(score, settings)
+    plunge = slice(profile.corner)
+    points = profile.at(sample_distances(profile, SAMPLES))
+    joints = joints_along(robot, tool, hole, motion.branch, *points)
+    axial = lateral = np.full(1, np.nan)
+    if settings.joint_stiffness is not None:
+        axial, lateral = compliance(jacobian(robot, tool, joints), settings.joint_stiffness, hole.direction)
+    return Measures(
+        travel=score.travel,
+        margin=float(steady.min()) if steady.size else 0.0,
+        plunge_rotation=float(np.abs(np.diff(profile.psi)[plunge]).sum()),
+        tool_speed_change=float(np.abs(profile.twist_rate[plunge]).max() * settings.feed_plunge),
+        limit_distance=float((2 * score.limit_distance / (limits.upper - limits.lower)).min()),
+        compliance_axial=float(axial.max()),
+        compliance_lateral=float(lateral.max()),
+        manipulability=float(manipulability(robot, joints).min()),
+    )
+
+
+def compliance(J: Array, stiffness: tuple[float, ...] | None, direction: Array) -> tuple[Array, Array]:
+    """Give of the tip to a force along the drill axis, and across it the way it gives most [m/N], each (...,).
+
+    Links and drill are taken as rigid: C = J diag(1/k) J^T, its part for places (thesis sec. 5.4.2: the main
+    compliance of a robot is its joints').
+
+    Args:
+        J: Jacobians at the TCP, shape (..., 6, 6).
+        stiffness: of the joints [N m/rad], shape (6,); None: unknown, and the answer is NaN.
+        direction: unit vector along the drill axis, shape (3,).
+    """
+    if stiffness is None:
+        return np.full(J.shape[:-2], np.nan), np.full(J.shape[:-2], np.nan)
+    # the drill axis, and two directions across it
+    frame = np.linalg.svd(direction[None])[2]
+    A = frame @ J[..., :3, :] / np.sqrt(stiffness)
+    C = A @ np.swapaxes(A, -1, -2)
+    mean, half = (C[..., 1, 1] + C[..., 2, 2]) / 2, (C[..., 1, 1] - C[..., 2, 2]) / 2
+    return C[..., 0, 0], mean + np.hypot(half, C[..., 1, 2])
+
+
+def manipulability(robot: Robot, joints: Array) -> Array:
+    """Yoshikawa's manipulability |det J| without a unit [1], shape (...,).
+
+    At every point of the tool the determinant is the product of both links and the sine between them, the distance of
+    the wrist centre from axis 1 as seen along axis 2, and the sine of joint 5. Divided by both links and the greatest
+    such distance it lies between 0 (singular) and 1.
+
+    Args:
+        robot: the arm.
+        joints: controller angles [rad], shape (..., 6).
+    """
+    return np.asarray(from_singular(robot, joints).prod(axis=-1))
+
+
+def from_singular(robot: Robot, joints: Array) -> Array:
+    """How far the shoulder, the elbow and the wrist are from singular [1], shape (..., 3): each 0 to 1.
+
+    They are the factors of `manipulability`: the share of its greatest reach at which the wrist centre lies from axis 1
+    as seen along axis 2, the sine between upper arm and forearm, and the sine of joint 5.
+
+    Args:
+        robot: the arm.
+        joints: controller angles [rad], shape (..., 6).
+    """
+    arm = robot.arm
+    _, q2, q3, _, q5, _ = np.moveaxis(joints * np.array(arm.sign) - np.array(arm.offset), -1, 0)
+    forearm = np.hypot(arm.a2, arm.c3)
+    elbow = (arm.c3 * np.sin(q3) + arm.a2 * np.cos(q3)) / forearm
+    ahead = arm.a1 + arm.c2 * np.sin(q2) + arm.a2 * np.cos(q2 + q3) + arm.c3 * np.sin(q2 + q3)
+    return np.asarray(np.abs(np.stack([ahead / (abs(arm.a1) + arm.c2 + forearm), elbow, np.sin(q5)], axis=-1)))
+
+
+@dataclass(frozen=True)
+class Reversals:
+    """Weighted share of the joints' reversals: N_rev / 6 where all weigh the same (eq. 4.7, first term)."""
+
+    weights: tuple[float, ...] = (1.0,) * 6
+
+    def __call__(self, score: Score) -> float:
+        """Cost of the motion."""
+        return float(np.dot(self.weights, score.reversals_per_joint)) / float(sum(self.weights))
+
+
+def thesis_objective(evaluation: Evaluation) -> float:
+    """Thesis eq. 4.7: 6/7 of the weight on reversals, 1/7 on travel, +1 for each of fault, jump and limit."""
+    score = evaluation.score
+    if score is None:
+        return float(len({finding.kind for finding in evaluation.findings}))
+    return 6 / 7 * Reversals()(score) + 1 / 7 * score.travel / Travel().scale

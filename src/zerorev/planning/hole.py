@@ -1,0 +1,298 @@
+"""plan(robot, tool, hole) and plan_deepest(robot, tool, hole): the story."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.plan import Baseline, Finding, HolePlan, Optimality
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion.criteria import measure, thesis_objective
+from zerorev.motion.critical import critical
+from zerorev.motion.evaluation import evaluate, meets_threshold
+from zerorev.motion.kinematics import wrist_offset
+from zerorev.search.bounds.proof import MOST_REVERSALS
+from zerorev.search.cut_short import cut_short
+from zerorev.search.deepest import Deepest
+from zerorev.search.exact import can_run
+from zerorev.search.optimum import LEAST_STROKE, alternatives, deepest_as_drilled, optimum, too_short
+from zerorev.search.rank import Candidate, Order
+from zerorev.verify.check import verify_hole
+
+__all__ = ["lever_findings", "motion_findings", "plan", "plan_deepest"]
+
+SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
+# lengths for an arm of size 1 (`Robot.size`)
+SHORT = 1e-3  # [m] a stroke that can be run wherever any can
+NO_OFFSET = 1e-6  # [m]
+SMALL_OFFSET = 10e-3  # [m] a wrist offset below which the spin hardly moves joints 1 to 3 (theory §1)
+
+
+def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> HolePlan:
+    """Find the best drilling motion of one hole, and check it independently.
+
+    Args:
+        robot: the arm.
+        tool: the drill on its flange.
+        hole: what to drill; a hole with a `profile` is evaluated, not searched.
+        settings: how; None for the defaults.
+
+    Returns:
+        the motion with its score, the baseline with constant spin, the outcome of the check, and findings. A hole that
+        cannot be drilled is an answer, too: its status is `infeasible`.
+    """
+    settings = settings or Settings()
+    if too_short(robot, hole):
+        return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=(_why_too_short(robot, hole),))
+    if hole.profile is None:
+        found = optimum(robot, tool, hole, settings)
+        answer = _planned(robot, tool, hole, settings, found.motion)
+        if found.optimality is not None:
+            answer = _with_optimality(robot, settings, answer, found.motion, found.optimality)
+        return _with_deepest(answer, settings, found.deepest)
+    answer = _evaluated(robot, tool, hole, settings, hole.profile)
+    return _with_deepest(answer, settings, deepest_as_drilled(robot, tool, hole, settings))
+
+
+def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> HolePlan:
+    """Find the deepest stroke of one hole that has no reversal, and the motion that reaches it, and check that.
+
+    Args:
+        robot: the arm.
+        tool: the drill on its flange.
+        hole: where to drill; its branch is the only one searched. Where its depth, or the motion that it gives, has no
+            reversal, the stroke is no less deep; else neither matters.
+        settings: how; None for the defaults. Every joint keeps `min_rate` at every point, whatever the `min_rate_rule`.
+
+    Returns:
+        the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
+        status is `infeasible` and the hole is as it was.
+    """
+    settings = settings or Settings()
+    deepest = deepest_as_drilled(robot, tool, hole, settings)
+    hole = replace(hole, profile=None)
+    if deepest.profile is None or deepest.branch is None:
+        findings = _why_none(robot, tool, hole, settings)
+        answer = HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
+        return _with_deepest(answer, settings, deepest)
+    why = None
+    for share in SHARES:
+        shorter = replace(hole, depth=share * deepest.depth)
+        order = Order(robot, tool, shorter, settings)
+        cut = order.candidate(cut_short(deepest.profile, shorter.depth), deepest.branch)
+        answer = _answered(robot, tool, shorter, settings, "planned", cut)
+        if answer.verified is not None and answer.verified.passed:
+            found = () if why is None else (_rejected("a deeper motion without a reversal", why, hole),)
+            answer = replace(answer, findings=(*answer.findings, *found))
+            return _with_deepest(answer, settings, replace(deepest, depth=shorter.depth))
+        why = why or (answer.verified.failures[0] if answer.verified else "it cannot be run")
+    message = f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
+    findings = (Finding("error", "verification", message, hole.id),)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings, deepest=0.0)
+
+
+def _rejected(what: str, why: str, hole: Hole) -> Finding:
+    """That something better was found which does not pass the check."""
+    return Finding("warning", "rejected", f"{what} was found, but does not pass the check: {why}", hole.id)
+
+
+def _planned(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: Candidate | None) -> HolePlan:
+    """The answer that the best motion makes; where it does not pass the check, the best one found that does."""
+    answer = _answered(robot, tool, hole, settings, "planned", best)
+    if answer.verified is None or answer.verified.passed:
+        return answer
+    why = answer.verified.failures[0]
+    for other in alternatives(robot, tool, hole, settings):
+        tried = _answered(robot, tool, hole, settings, "planned", other)
+        if tried.verified is not None and tried.verified.passed:
+            assert answer.score is not None
+            rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, hole)
+            return replace(tried, findings=(*tried.findings, rejected))
+    message = f"no motion was found that passes the check; of the best one: {why}"
+    findings = (Finding("error", "verification", message, hole.id),)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
+
+
+def _answered(
+    robot: Robot,
+    tool: Tool,
+    hole: Hole,
+    settings: Settings,
+    status: Literal["planned", "evaluated"],
+    best: Candidate | None,
+) -> HolePlan:
+    """The answer that the best motion makes, with its baseline, checked, and with what a user should know of it."""
+    offset = wrist_offset(robot, tool)
+    if best is None:
+        return HolePlan(hole, "infeasible", offset, findings=_why_infeasible(robot, tool, hole, settings))
+    answer = HolePlan(
+        hole=hole,
+        status=status,
+        wrist_offset=offset,
+        motion=best.evaluation.motion,
+        score=best.score,
+        measures=measure(robot, tool, hole, best.evaluation, settings),
+        baseline=_baseline(robot, tool, hole, best.profile, best.branch, settings),
+        critical_rates=_critical_rates(robot, tool, hole, best.profile, best.branch),
+    )
+    verified = verify_hole(robot, tool, settings, answer)
+    answer = replace(answer, verified=verified)
+    return replace(answer, findings=motion_findings(robot, settings, answer))
+
+
+def _evaluated(robot: Robot, tool: Tool, hole: Hole, settings: Settings, profile: Profile) -> HolePlan:
+    """The answer to a given motion on its branch; where none is given, on the one that thesis eq. 4.7 prefers.
+
+    Which branch a published motion belongs to is no question of the motion threshold, so the thesis' own objective
+    answers it, and not the order by which motions are searched for.
+    """
+    branches = range(8) if hole.branch is None else (hole.branch,)
+    order = Order(robot, tool, hole, settings)
+    evaluations = {branch: evaluate(robot, tool, hole, profile, branch, settings) for branch in branches}
+    branch = min(branches, key=lambda branch: thesis_objective(evaluations[branch]))
+    best = order.judged(profile, branch, evaluations[branch])
+    if best is not None:
+        return _answered(robot, tool, hole, settings, "evaluated", best)
+    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=evaluations[branch].findings)
+
+
+def _baseline(
+    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings
+) -> Baseline | None:
+    """The same hole drilled with psi = psi_start on the same branch, if that can be run."""
+    constant = Profile(profile.standoff[[0, profile.corner, -1]], np.full(3, profile.psi[0]))
+    score = evaluate(robot, tool, hole, constant, branch, settings).score
+    return None if score is None else Baseline(score.reversals_per_joint, score.travel)
+
+
+def _critical_rates(robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int) -> Array:
+    """The critical rates at the corner of the motion, which its legs bracket where no joint reverses there."""
+    corner = profile.corner
+    return critical(robot, tool, hole, branch, profile.psi[corner], standoff=profile.standoff[corner]).kappa
+
+
+def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
+    """What a user should know of a motion that can be run."""
+    score, hole = answer.score, answer.hole
+    assert score is not None
+    assert answer.verified is not None
+    found = []
+    for event in score.events:
+        place = "at the target" if event.leg == "target" else f"in the {event.leg}, {event.standoff * 1e3:.2f} mm out"
+        found.append(Finding("warning", "reversal", f"{robot.joint_names[event.joint - 1]} reverses {place}", hole.id))
+    if not meets_threshold(score, settings):
+        steady = np.array(score.reversals_per_joint) == 0
+        rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+        slowest = int(np.argmin(np.where(steady, rates, np.inf)))
+        what = "its slowest point" if settings.min_rate_rule == "pointwise" else "the average of a leg"
+        message = (
+            f"{robot.joint_names[slowest]} moves only {np.rad2deg(rates[slowest]) / 1e3:.5f} deg/mm at {what}, below"
+            f" the motion threshold of {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm"
+        )
+        if answer.status == "planned":
+            if answer.optimality is not None and answer.optimality.proven:
+                message += ", which no motion of straight legs with so few reversals keeps (proven)"
+            message += "; no motion with so few reversals was found that keeps more"
+        found.append(Finding("warning", "threshold", message, hole.id))
+    found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
+    return tuple(found)
+
+
+def _with_optimality(
+    robot: Robot, settings: Settings, answer: HolePlan, best: Candidate | None, optimality: Optimality
+) -> HolePlan:
+    """The answer with what is proven of it, and with findings that say what of them is proven.
+
+    Of a motion that took the place of the best, which did not pass the check, only the bounds are known.
+    """
+    if (None if best is None else best.score) is not answer.score:
+        return replace(answer, optimality=replace(optimality, travel_at_least=None, gap=None, proven=False))
+    proven = replace(answer, optimality=optimality)
+    if answer.motion is None:
+        findings = [
+            replace(
+                finding,
+                message=f"{finding.message} (proven for straight legs with at most {MOST_REVERSALS:g} reversals)",
+            )
+            if optimality.proven and finding.kind in ("limit", "unreachable")
+            else finding
+            for finding in answer.findings
+        ]
+        return replace(proven, findings=tuple(findings))
+    before, after = (motion_findings(robot, settings, each) for each in (answer, proven))
+    return replace(proven, findings=(*after, *(each for each in answer.findings if each not in before)))
+
+
+def _with_deepest(answer: HolePlan, settings: Settings, deepest: Deepest) -> HolePlan:
+    """The answer with its deepest stroke, and what a user should know of that."""
+    found, hole = list(answer.findings), answer.hole.id
+    if settings.min_rate_rule == "mean" and settings.min_rate > 0 and deepest.depth > 0:
+        message = "the deepest stroke is a lower bound: it keeps the motion threshold at every point"
+        found.append(Finding("info", "deepest", message, hole))
+    if deepest.beyond_cap > deepest.depth:
+        message = (
+            f"straight legs that turn the tool by more than {np.rad2deg(settings.max_twist) / 1e3:g} deg/mm drill"
+            f" {deepest.beyond_cap * 1e3:.3f} mm without a reversal, free legs within it {deepest.depth * 1e3:.3f} mm"
+        )
+        found.append(Finding("info", "deepest", message, hole))
+    return replace(answer, deepest=deepest.depth, deepest_at_most=deepest.at_most, findings=tuple(found))
+
+
+def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:
+    """Findings of a whole job: a drill axis through or near the wrist centre leaves the spin no lever (theory §1).
+
+    Args:
+        robot: the arm.
+        tool: the drill on its flange.
+    """
+    offset = wrist_offset(robot, tool)
+    names = ", ".join(robot.joint_names[:3])
+    if offset < NO_OFFSET * robot.size:
+        message = f"the drill axis passes through the wrist centre (e = 0): spinning cannot move {names}, so it cannot"
+        return (Finding("warning", "wrist_offset", message + " keep them from reversing; offset the tool", None),)
+    if offset < SMALL_OFFSET * robot.size:
+        message = f"the wrist centre lies only {offset * 1e3:.2f} mm from the drill axis: the spin hardly moves {names}"
+        return (Finding("warning", "wrist_offset", message + ", and zero reversals reach only small depths", None),)
+    return ()
+
+
+def _why_infeasible(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
+    """Which of reach, limits or the bound on the spin leaves no motion at all."""
+    wide = replace(robot, limits=replace(robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi)))
+    if can_run(wide, tool, hole, settings):
+        spins = "" if settings.psi_bound is None else f" within +-{np.rad2deg(settings.psi_bound):g} deg of spin"
+        message = f"no branch drills it within the joint limits{spins}"
+        if settings.keep_lead_in and can_run(robot, tool, hole, settings):
+            message = (
+                f"no motion was found whose whole lead-in of {settings.lead_in * 1e3:g} mm runs without a reversal"
+            )
+            return (Finding("error", "lead_in", message, hole.id),)
+        return (Finding("error", "limit", message, hole.id),)
+    where = ", ".join(f"{value:.1f}" for value in hole.target * 1e3)
+    message = f"out of reach: no branch and spin brings the tool along the axis at ({where}) mm"
+    return (Finding("error", "unreachable", message, hole.id),)
+
+
+def _why_too_short(robot: Robot, hole: Hole) -> Finding:
+    """That a stroke is too short for figures that mean anything."""
+    least = np.format_float_positional(LEAST_STROKE * robot.reach * 1e3, 2, fractional=False)
+    message = f"a depth of {hole.depth * 1e3:g} mm is too short: on this arm it takes {least} mm or more to be checked"
+    return Finding("error", "depth", message, hole.id)
+
+
+def _why_none(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
+    """Why no stroke, however short, has zero reversals."""
+    short = replace(hole, depth=SHORT * robot.size)
+    if not can_run(robot, tool, short, settings):
+        return _why_infeasible(robot, tool, short, settings)
+    rate = (
+        f" while every joint moves {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm or more" if settings.min_rate else ""
+    )
+    return (Finding("error", "no_stroke", f"no stroke, however short, is without a reversal{rate}", hole.id),)

@@ -1,0 +1,106 @@
+"""Whole jobs: hole after hole on as many processor cores as wanted, in bounded memory, and never twice."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Generator
+
+from zerorev.errors import InputError
+from zerorev.files.part import Part
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job, Settings
+from zerorev.model.plan import HolePlan, Plan, Strokes
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.planning.hole import lever_findings, plan, plan_deepest
+from zerorev.workers import Workers, interrupts_held_back
+
+__all__ = ["answers", "plan_job", "unanswered", "workers_for"]
+
+WORTH_WORKERS = 60  # holes of a job below which starting workers takes longer than they save
+
+
+def plan_job(
+    job: Job, progress: Callable[[int, int], None] | None = None, *, strokes: Strokes = "asked", workers: int = 1
+) -> Plan:
+    """Plan every hole of a job; what is wrong with one hole is a finding, and the others are still planned.
+
+    Args:
+        job: robot, tool, holes, settings.
+        progress: called with (holes done, holes in all) before the first and after each hole.
+        strokes: those `asked` for, or of each hole the `deepest` without a reversal (`plan_deepest`).
+        workers: processes to run it on; the plan is the same. A script that asks for more than one must be safe to
+            import (`if __name__ == "__main__":`), as everywhere in Python.
+    """
+    found: list[HolePlan] = []
+    if progress:
+        progress(0, len(job.holes))
+    for answer in answers(job, strokes=strokes, workers=workers):
+        found.append(answer)
+        if progress:
+            progress(len(found), len(job.holes))
+    return unanswered(job, strokes, tuple(found))
+
+
+def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> Plan:
+    """The plan of a job but for its holes, or with these."""
+    findings = lever_findings(job.robot, job.tool)
+    return Plan(job.robot, job.tool, job.settings, holes, job.T_base_part, job.name, findings, strokes)
+
+
+def answers(
+    job: Job, *, strokes: Strokes = "asked", workers: int = 1, part: Part | None = None
+) -> Generator[HolePlan, None, None]:
+    """The answers in the order of the job, each as soon as it and those before it are there.
+
+    Args:
+        job: robot, tool, holes, settings.
+        strokes: those `asked` for, or of each hole the `deepest` without a reversal.
+        workers: processes to run it on; the answers are the same. The first hole is answered in this process, so that
+            kernels that are not in the cache are compiled once.
+        part: holes that are finished come from it, and each that is new is kept in it before it is given out.
+
+    Raises:
+        OutputError: the part cannot be written.
+        ZerorevError: a worker ended before its time.
+    """
+    done = 0
+    if part is not None:
+        for answer in part.answers():
+            done += 1
+            yield answer
+    with Workers(_Planner(job.robot, job.tool, job.settings, strokes), workers) as planners:
+        for answer in planners.map(job.holes[done:]):
+            if part is not None:
+                with interrupts_held_back():  # a hole is kept and counted, or neither
+                    part.append(answer)
+            yield answer
+
+
+def workers_for(holes: int, wanted: int | None) -> int:
+    """How many processes to run a job on.
+
+    Args:
+        holes: of the job.
+        wanted: by the user; None for all cores where the job is large enough.
+
+    Raises:
+        InputError: fewer than one is wanted.
+    """
+    if wanted is None:
+        cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+        return cores if holes >= WORTH_WORKERS else 1
+    if wanted < 1:
+        raise InputError(f"{wanted} workers", where="--workers", accepted="1 or more")
+    return wanted
+
+
+class _Planner:
+    """What one hole of the job is answered by; goes to the workers as it is."""
+
+    def __init__(self, robot: Robot, tool: Tool, settings: Settings, strokes: Strokes) -> None:
+        self.robot, self.tool, self.settings, self.strokes = robot, tool, settings, strokes
+
+    def __call__(self, hole: Hole) -> HolePlan:
+        return (plan if self.strokes == "asked" else plan_deepest)(self.robot, self.tool, hole, self.settings)

@@ -1,0 +1,288 @@
+"""check_plan(plan): is everything that a plan file states of its holes what comes out when it is computed again?
+
+The motion is followed by `verify.check`, its figures are computed by `verify.figures`; neither shares code with the
+search. What only a search can find, the deepest stroke and whether there is a better motion, is searched for once more.
+Which field is treated how, and how exactly it has to agree, is said in `model.plan_fields`.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache, partial
+
+import numpy as np
+
+from zerorev.files.plan_data import answer_data
+from zerorev.files.plan_differences import differ, fields_differ, findings_differ, leaves
+from zerorev.files.units import deg_per_mm, mm
+from zerorev.model.hole import Hole
+from zerorev.model.job import Settings
+from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion.criteria import thesis_objective
+from zerorev.motion.evaluation import Evaluation
+from zerorev.planning.hole import lever_findings, motion_findings, plan, plan_deepest
+from zerorev.search.rank import Candidate, Order
+from zerorev.verify.check import subject, verify_hole
+from zerorev.verify.digits import moved_figures
+from zerorev.verify.figures import Figures, figures, nearer_turn
+from zerorev.workers import Workers
+
+__all__ = ["Checked", "check_hole", "check_plan"]
+
+BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
+OF_A_PROOF = "tolerance"  # one that a certificate adds
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A plan that was checked.
+
+    Attributes:
+        plan: with `verified` filled in for each hole that has a motion; certificates are not proven again here, and
+            are as they were.
+        wrong: what the file states otherwise than it is found, one error each.
+    """
+
+    plan: Plan
+    wrong: tuple[Finding, ...]
+
+    def marked(self, *, rewritten: bool = False) -> Plan:
+        """The plan with what is wrong among the failures of each hole's check, or among the findings without one.
+
+        Args:
+            rewritten: for a file that the plan replaces: what the old one states of its check is not a fault of it.
+        """
+        wrong = [each for each in self.wrong if not (rewritten and each.message.startswith("verified."))]
+        holes = []
+        for hole in self.plan.holes:
+            found = tuple(finding for finding in wrong if finding.hole == hole.hole.id)
+            if found and hole.verified is not None:
+                failures = hole.verified.failures + tuple(finding.message for finding in found)
+                hole = replace(hole, verified=replace(hole.verified, passed=False, failures=failures))
+            elif found:
+                hole = replace(hole, findings=hole.findings + found)
+            holes.append(hole)
+        of_all = tuple(finding for finding in wrong if finding.hole is None)
+        return replace(self.plan, holes=tuple(holes), findings=self.plan.findings + of_all)
+
+
+def check_plan(stated: Plan, *, workers: int = 1, progress: Callable[[int, int], None] | None = None) -> Checked:
+    """Check the motion of every hole, and compute again what the file states of it.
+
+    Args:
+        stated: any plan, also a wrong one.
+        workers: processes to run it on; the outcome is the same.
+        progress: called with (holes checked, holes in all) before the first and after each.
+    """
+    said = _but(stated.findings, UNFINISHED), lever_findings(stated.robot, stated.tool)
+    wrong = [_error(message, None) for message in findings_differ(*said)]
+    holes: list[HolePlan] = []
+    if progress:
+        progress(0, len(stated.holes))
+    with Workers(partial(check_hole, stated.robot, stated.tool, stated.settings, stated.strokes), workers) as checkers:
+        for hole, (verified, messages) in zip(stated.holes, checkers.map(stated.holes), strict=True):
+            holes.append(replace(hole, verified=verified))
+            wrong += [_error(message, hole.hole.id) for message in messages]
+            if progress:
+                progress(len(holes), len(stated.holes))
+    return Checked(replace(stated, holes=tuple(holes)), tuple(wrong))
+
+
+def without_proofs(plan: Plan) -> Plan:
+    """The plan without certificates and what they say of placements: who has not proven them again does not show them.
+
+    Args:
+        plan: any plan.
+    """
+    return replace(plan, holes=tuple(
+        replace(hole, certificate=None, certified_within=None, findings=_but(hole.findings, OF_A_PROOF))
+        for hole in plan.holes
+    ))  # fmt: skip
+
+
+def check_hole(
+    robot: Robot, tool: Tool, settings: Settings, strokes: Strokes, stated: HolePlan
+) -> tuple[Verification | None, tuple[str, ...]]:
+    """Check the motion of one hole, and compute again what is stated of it.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        settings: as planned.
+        strokes: of the plan.
+        stated: what is claimed.
+
+    Returns:
+        the outcome of the check, None without a motion; and one sentence for each field that differs: its name, what is
+        stated and what is found.
+    """
+    deepest = strokes == "deepest" and stated.hole.profile is None
+    again = (
+        plan_deepest(robot, tool, _with_its_motion(stated), settings)
+        if deepest
+        else plan(robot, tool, stated.hole, settings)
+    )
+    if stated.motion is None:
+        differences = _fields_differ(robot, stated, again, dict)
+        return None, (*differences, *findings_differ(_but(stated.findings, OF_A_PROOF), again.findings))
+    own = figures(robot, tool, settings, stated)
+    answer = stated if own is None else own.answer
+    # what is stated of the figures is compared below, so the check of the motion is given those that were found
+    verified = verify_hole(robot, tool, settings, answer)
+    found = replace(
+        again,
+        hole=stated.hole,
+        status=stated.status if again.motion is None else again.status,
+        motion=stated.motion,
+        score=answer.score,
+        wrist_offset=answer.wrist_offset,
+        baseline=answer.baseline,
+        critical_rates=answer.critical_rates,
+        measures=answer.measures,
+        verified=stated.verified,
+        optimality=_with_gap(stated.optimality, again.optimality, answer.score),
+    )
+    searched = Counter(again.findings) - Counter(motion_findings(robot, settings, again) if again.motion else ())
+    said = [*motion_findings(robot, settings, replace(found, verified=verified)), *searched.elements()]
+    digits = cache(partial(_slack, robot, tool, settings, stated, own))
+    differences = _fields_differ(robot, stated, found, digits)
+    unsaid = (OF_A_PROOF, *(() if verified.passed else ("verification",)))  # what fails is said already
+    differences += findings_differ(_but(stated.findings, *unsaid), _but(said, *unsaid))
+    differences += _asked_differs(robot, settings, stated, deepest)
+    if own is not None:
+        differences += _turn_differs(robot, settings, stated.motion, own)
+        differences += () if deepest else _improved(robot, tool, settings, found, again)
+    if stated.verified is not None:
+        fails = not verified.passed or bool(differences)
+        outcome = replace(stated, verified=_comparable(stated.verified, verified, fails))
+        differences += _fields_differ(robot, stated, outcome, digits)
+    # of what is stated, too, where that is the same
+    known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
+    return replace(verified, subject=known), tuple(differences)
+
+
+def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:
+    """What is proven, with the gap that the stated bound leaves: where a proof stops depends on the last digits."""
+    if stated is None or stated.travel_at_least is None or found is None or found.gap is None or not score:
+        return found
+    return replace(found, gap=1 - stated.travel_at_least / score.travel) if score.travel > 0 else found
+
+
+def _with_its_motion(stated: HolePlan) -> Hole:
+    """The hole of a deepest stroke, its motion given, so that the search is sure to know of it."""
+    motion, hole = stated.motion, stated.hole
+    if motion is None or not np.allclose(motion.profile.standoff[[0, -1]], hole.depth, rtol=0, atol=1e-9):
+        return hole
+    return replace(hole, profile=motion.profile)
+
+
+def _error(message: str, hole: str | None) -> Finding:
+    return Finding("error", "verification", message, hole)
+
+
+def _fields_differ(
+    robot: Robot, stated: HolePlan, found: HolePlan, digits: Callable[[], dict[str, float]]
+) -> list[str]:
+    """One sentence for each field that differs by more than its tolerance and what the file's digits leave open."""
+    data = answer_data(stated, "asked"), answer_data(found, "asked")
+    differences = list(fields_differ(*data, {}, size=robot.size))
+    return list(fields_differ(*data, digits(), size=robot.size)) if differences else []
+
+
+def _slack(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan, own: Figures | None) -> dict[str, float]:
+    """What the digits of the file leave open of the figures, by their paths, in the units of the file."""
+    slack: dict[str, float] = {}
+    if own is None:
+        return slack
+    here = dict(leaves(answer_data(own.answer, "asked")))
+    for moved in moved_figures(robot, tool, settings, stated):
+        there = dict(leaves(answer_data(moved, "asked")))
+        for path, value in here.items():
+            other = there.get(path, value)
+            if isinstance(value, float) and isinstance(other, float):
+                slack[path] = slack.get(path, 0.0) + 2 * abs(value - other)
+            elif isinstance(value, float) != isinstance(other, float):
+                slack[path] = np.inf  # a rate that is all but undefined
+    nearest = max(value for path, value in slack.items() if path.startswith("limit_distance_deg"))
+    return slack | {"verified.min_limit_distance_deg": nearest}
+
+
+def _comparable(stated: Verification, found: Verification, fails: bool) -> Verification:
+    """The outcome of the check; where something fails, that is said already, whatever was stated of it."""
+    return replace(found, passed=stated.passed, failures=stated.failures) if fails else found
+
+
+def _but(findings: Iterable[Finding], *kinds: str) -> tuple[Finding, ...]:
+    """Findings but for those of some kinds."""
+    return tuple(finding for finding in findings if finding.kind not in kinds)
+
+
+def _asked_differs(robot: Robot, settings: Settings, stated: HolePlan, deepest: bool) -> Iterator[str]:
+    """What planning keeps of every motion that it finds: the programmed corner, and the cap on the twist of free legs.
+
+    A given motion is the one that is run, a deepest one is as deep as the stroke that is stated.
+    """
+    motion = stated.motion
+    assert motion is not None
+    if stated.hole.profile is not None:
+        data = answer_data(stated, "asked")
+        for name in ("standoff_mm", "psi_deg"):
+            given, run = data["given"][name], data[name]
+            if len(given) != len(run):
+                yield differ(f"given.{name}", given, run)
+            else:
+                pairs = enumerate(zip(given, run, strict=True))
+                yield from (differ(f"given.{name}[{i}]", a, b) for i, (a, b) in pairs if a != b)
+    if stated.status != "planned":
+        return
+    profile = motion.profile
+    if abs(profile.standoff.min() - settings.corner) > 1e-9 * robot.size:
+        yield differ(f"standoff_mm[{profile.corner}]", float(mm(profile.standoff.min())), float(mm(settings.corner)))
+    twist = float(np.abs(profile.twist_rate).max())
+    if profile.psi.size > 3 and twist > settings.max_twist * (1 + 1e-6):
+        yield differ("settings.max_twist_deg_per_mm", float(deg_per_mm(settings.max_twist)), float(deg_per_mm(twist)))
+    if deepest and stated.deepest is not None and abs(stated.hole.depth - stated.deepest) > 1e-12:
+        yield differ("depth_mm", float(mm(stated.hole.depth)), float(mm(stated.deepest)))
+
+
+def _turn_differs(robot: Robot, settings: Settings, motion: Motion, own: Figures) -> Iterator[str]:
+    """The turns of the joints have to be those that the settings ask for."""
+    other = nearer_turn(robot, settings, motion, own.joints)
+    if other is not None:
+        joint, angle = other
+        path = f"joints_deg.start[{joint}]"
+        yield differ(path, float(np.rad2deg(motion.joints[0, joint])), float(np.rad2deg(angle)))
+
+
+def _improved(robot: Robot, tool: Tool, settings: Settings, found: HolePlan, again: HolePlan) -> Iterator[str]:
+    """A motion that is stated as the best must not be beaten by the one that is found when it is searched for again."""
+    order = Order(robot, tool, found.hole, settings)
+    ours, theirs = _candidate(order, found), _candidate(order, again)
+    if ours is None or theirs is None:
+        return
+    if found.hole.profile is not None:
+        # given, and on the better of all branches where none is named
+        costs = [thesis_objective(each.evaluation) for each in (ours, theirs)]
+        if costs[1] < costs[0] * (1 - BETTER):
+            yield differ("branch", ours.branch, theirs.branch)
+        return
+    mine, other = order.rank(ours), order.rank(theirs)
+    for path, stated, better in (
+        ("reversals, weighted", mine.reversals, other.reversals),
+        ("min_rate_deg_per_mm, below the threshold by", deg_per_mm(mine.lack).item(), deg_per_mm(other.lack).item()),
+        ("settings.objective, its cost", mine.cost, other.cost),
+    ):
+        if better < stated - BETTER * abs(stated):
+            yield f"{differ(path, stated, better)} by searching again"
+        if abs(better - stated) > BETTER * abs(stated):
+            return
+
+
+def _candidate(order: Order, answer: HolePlan) -> Candidate | None:
+    motion = answer.motion
+    evaluation = Evaluation(motion, answer.score, ())
+    return None if motion is None else order.judged(motion.profile, motion.branch, evaluation)

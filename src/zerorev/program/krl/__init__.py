@@ -1,0 +1,1 @@
+"""KRL: words, writing and reading of programs for KUKA controllers."""

@@ -1,0 +1,197 @@
+"""KRL, the language of KUKA's controllers (KR C4): a program's text.
+
+Decimals: LIN targets have 4 (round-off 0.00005 mm and deg), far below what an axis resolves. Angles of frames and axes
+act over a lever of a metre or more and have more; a REAL of the controller holds about seven digits.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version as installed_version
+
+import numpy as np
+
+from zerorev.errors import NotExportableError
+from zerorev.model._arrays import Array
+from zerorev.model.plan import Finding
+from zerorev.program.krl.text import (
+    aggregate,
+    axis_angles,
+    clean,
+    comment,
+    degrees,
+    fixed,
+    frame_angles,
+    identifier,
+    settled,
+    turn_about_x,
+)
+from zerorev.program.neutral import HoleProgram, JointMove, LinearMove, Program
+from zerorev.program.notes import notes, turn_speed
+
+__all__ = ["to_krl"]
+
+PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves are not checked for collisions
+LEAST_TURN_SPEED = 200.0  # [deg/s]
+TURN_SPEED_RESERVE = 1.2
+FRAME_ANGLE_DECIMALS, AXIS_DECIMALS, SPEED_DECIMALS = 6, 5, 6
+LONGEST_ID = 60
+RULE = "; " + "-" * 98
+
+SAFETY = (
+    "Run the program in T1 first, the spindle off and no part in place.",
+    "PTP moves are not checked for collisions, neither the first nor those between holes.",
+    "Spindle, coolant and payload ($LOAD) are not set here. The spindle must run before the drill enters.",
+    "$BASE is given from the robot's own base: it holds as written where $ROBROOT equals $WORLD.",
+    "$TOOL, $BASE and the speeds are set at the top: after a reset do not start from a line further down.",
+    "After a stop in a hole pull the drill out along the drill axis (tool X) before a new start: a PTP comes first.",
+)
+
+FRAMES = (
+    "$TOOL has X along the plunge, so A and B are constant along a hole and only C varies: it falls by as much as psi "
+    "grows. C is written within (-180, 180]. No LIN turns the tool by more than 120 deg: the short way round is meant.",
+)
+
+
+def to_krl(
+    program: Program,
+    *,
+    name: str | None = None,
+    findings: tuple[Finding, ...] | None = None,
+    version: str | None = None,
+) -> str:
+    """The text of a .src file; the file must be called like the program in it.
+
+    Args:
+        program: what to write.
+        name: of the program, made a KRL identifier; by default the plan's.
+        findings: stated in the comment block; by default what the program tells about itself.
+        version: of zerorev, stated in the comment block; by default the installed one.
+
+    Raises:
+        NotExportableError: the robot is not a KUKA.
+    """
+    refuse_other_makers(program.manufacturer, program.robot)
+    lines = [
+        "&ACCESS RVP",
+        "&REL 1",
+        "&COMMENT drilling without joint reversals",
+        f"DEF {identifier(name or program.name)} ( )",
+        *_head(program, notes(program) if findings is None else findings, version or installed_version("zerorev")),
+        "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
+        *_settings(program),
+    ]
+    for number, hole in enumerate(program.holes, start=1):
+        lines += _hole(hole, f"Hole {number} of {len(program.holes)}")
+    return "\n".join([*lines, "END", ""])
+
+
+def refuse_other_makers(manufacturer: str, robot: str) -> None:
+    """Let only a KUKA pass.
+
+    Raises:
+        NotExportableError: another maker's robot.
+    """
+    if manufacturer.strip().upper() != "KUKA":
+        by = f"by {manufacturer}" if manufacturer.strip() else "of a maker that its file does not name"
+        raise NotExportableError((f"the robot {robot} is {by}, and KRL runs on KUKA controllers alone",))
+
+
+def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list[str]:
+    """The comment block: what an operator should read before pressing start."""
+    settings = program.settings
+    spindle = "not given" if settings.spindle_rpm is None else f"{settings.spindle_rpm:g} rev/min"
+    blend = f"{settings.blend * 1e3:g} mm" if settings.blend > 0 else "none: exact stop"
+    deepened = ", corner placed deeper by the depth lost to the blend" if settings.deepen_corner else ""
+    reversals = sum(sum(hole.reversals_per_joint) for hole in program.holes)
+    facts = (
+        ("Plan      ", program.name),
+        ("Robot     ", f"{program.manufacturer} {program.model} ({program.robot})"),
+        ("Tool      ", program.tool),
+        ("Feeds     ", f"plunge {settings.feed_plunge * 1e3:g} mm/s, retract {settings.feed_retract * 1e3:g} mm/s"),
+        ("Spindle   ", spindle),
+        ("Blend     ", f"{blend} at the target{deepened}"),
+        ("Holes     ", f"{len(program.holes)}, with {reversals} joint reversals in all"),
+    )
+    lines = [RULE, *comment(f"Written by zerorev {version}")]
+    for first, text in facts:
+        lines += comment(text, first=first, longest=3 * LONGEST_ID)
+    for finding in findings:
+        at = f"hole {clean(finding.hole)[:LONGEST_ID]}: " if finding.hole is not None else ""
+        lines += comment(at + finding.message, first=f"{finding.level}: ".ljust(10))
+    lines.append(";")
+    for text in (*SAFETY, *FRAMES):
+        lines += comment(text, first="- ")
+    return [*lines, RULE]
+
+
+def _settings(program: Program) -> list[str]:
+    turn = TURN_SPEED_RESERVE * np.rad2deg(max(turn_speed(hole) for hole in program.holes))
+    # the twist must never throttle the feed, so the greater of the usual value and the needed one with a reserve; the
+    # last bits of a turn that is a whole number must not decide what is written
+    allowed = fixed(max(LEAST_TURN_SPEED, np.ceil(turn - 1e-6)), 1)
+    return [
+        ";FOLD INI",
+        "BAS (#INITMOV,0 )",
+        f"BAS (#VEL_PTP,{PTP_SPEED} )",
+        f"BAS (#ACC_PTP,{PTP_ACCELERATION} )",
+        f"$TOOL={_frame(program.T_flange_tool)}",
+        f"$BASE={_frame(program.T_base_part)}",
+        "$IPO_MODE=#BASE",
+        "$ORI_TYPE=#VAR",
+        "$ADVANCE=3",
+        f"$VEL.ORI1={allowed}",
+        f"$VEL.ORI2={allowed}",
+        ";ENDFOLD (INI)",
+    ]
+
+
+def _hole(hole: HoleProgram, title: str) -> list[str]:
+    """A PTP by axis values, then absolute linear moves.
+
+    Never LIN_REL: selected again after a stop within the stroke it runs its whole stroke again from there, into the
+    material or the fixture; an absolute LIN only runs what is left. Between the linear moves stand nothing but
+    assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
+    """
+    lines = [f";FOLD {title}: {clean(hole.id)[:LONGEST_ID]}", *_about(hole), _ptp(hole.start)]
+    A, B = axis_angles(hole.axis)
+    feed, radius = None, ""
+    for move in hole.moves:
+        if move.feed != feed:
+            feed = move.feed
+            lines.append(f"$VEL.CP={settled(feed, SPEED_DECIMALS)} ; {move.leg}: {feed * 1e3:g} mm/s")
+        if move.blend > 0 and (printed := settled(move.blend * 1e3)) != radius:
+            radius = printed
+            lines.append(f"$APO.CDIS={radius}")
+        lines.append(_lin(move, A, B))
+    return [*lines, f";ENDFOLD ({title})"]
+
+
+def _about(hole: HoleProgram) -> list[str]:
+    places = [(hole.start.standoff, hole.start.psi), *((move.standoff, move.psi) for move in hole.moves)]
+    standoff = " ".join(fixed(s * 1e3, 3) for s, _ in places)
+    psi = " ".join(fixed(np.rad2deg(p)) for _, p in places)
+    reversals = " ".join(f"{count:d}" for count in hole.reversals_per_joint)
+    stroke = f"stroke {fixed(hole.depth * 1e3, 3)} mm, lead-in {fixed(hole.lead_in * 1e3, 3)} mm"
+    return [
+        *comment(f"{stroke}, reversals of A1 to A6: {reversals}"),
+        *comment(f"stand-off [mm] {standoff}"),
+        *comment(f"psi [deg] {psi}"),
+    ]
+
+
+def _ptp(move: JointMove) -> str:
+    # axis values carry the turns of A4 and A6, which a pose with S and T would leave to the controller
+    values = [fixed(angle, AXIS_DECIMALS) for angle in np.rad2deg(move.joints)]
+    return f"PTP {aggregate('AXIS', 'A1 A2 A3 A4 A5 A6', values)}"
+
+
+def _lin(move: LinearMove, A: float, B: float) -> str:
+    T = move.T_part_tool
+    angles = [degrees(angle) for angle in (A, B, turn_about_x(T[:3, :3], A, B))]
+    target = aggregate("", "X Y Z A B C", [*(fixed(x * 1e3) for x in T[:3, 3]), *angles])
+    return f"LIN {target}{' C_DIS' if move.blend > 0 else ''} ; {move.comment}"
+
+
+def _frame(T: Array) -> str:
+    angles = [degrees(angle, FRAME_ANGLE_DECIMALS) for angle in frame_angles(T[:3, :3])]
+    return aggregate("FRAME", "X Y Z A B C", [*(fixed(x * 1e3) for x in T[:3, 3]), *angles])

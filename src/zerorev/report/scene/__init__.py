@@ -1,0 +1,1 @@
+"""The data behind pictures: the robot and its cell, the twist plane, the player."""

@@ -1,0 +1,138 @@
+"""What the terminal shows of an answer: a row a hole while they are few, the whole in figures where they are many."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from zerorev.model.job import Settings
+from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.report.words import tables, terminal
+
+__all__ = ["ROWS", "Shown", "how_deep"]
+
+ROWS = 60  # of a table that can still be read
+
+
+class Shown:
+    """Takes one hole's answer after the other, and keeps no more of them than it will show.
+
+    Attributes:
+        sound: whether every hole has a checked motion, and nothing is found that is an error.
+        certified: whether, besides, every one is certified.
+    """
+
+    def __init__(self, plan: Plan, answers: Iterable[HolePlan] = ()) -> None:
+        """Begin.
+
+        Args:
+            plan: all but its holes.
+            answers: to take at once.
+        """
+        self._plan, self._rows = plan, list[HolePlan]()
+        self._findings: list[Finding] = list(plan.findings)
+        self._status, self._reversals = Counter[str](), Counter[int]()
+        self._proven, self._bounded = 0, 0
+        self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
+                                                      "deepest beyond depth [mm]",
+                                                      "certified within [mm]")}  # fmt: skip
+        self.sound, self.certified = not any(finding.level == "error" for finding in plan.findings), True
+        for answer in answers:
+            self.add(answer)
+
+    def add(self, answer: HolePlan) -> None:
+        """Take the next hole's answer."""
+        found = tables.hole_findings(answer)
+        self._findings += found
+        self.sound &= answer.verified is not None and answer.verified.passed
+        self.sound &= not any(finding.level == "error" for finding in answer.findings)
+        self.certified &= answer.certificate is not None and answer.certificate.verdict == "certified"
+        self._status[answer.status] += 1
+        self._bounded += answer.optimality is not None
+        self._proven += answer.optimality is not None and answer.optimality.proven
+        if len(self._rows) <= ROWS:
+            self._rows.append(answer)
+        for name, value in self._values(answer):
+            self._figures[name].add(value, answer.hole.id)
+        if answer.score is not None:
+            self._reversals[answer.score.reversals] += 1
+
+    def _values(self, answer: HolePlan) -> Iterator[tuple[str, float]]:
+        if answer.score is not None:
+            yield "travel [deg]", float(np.rad2deg(answer.score.travel))
+        if slow := tables.slowest(answer.score, self._plan.settings):
+            yield "slowest joint [deg/mm]", float(np.rad2deg(slow[0]) / 1e3)
+        if answer.certified_within is not None:
+            yield "certified within [mm]", answer.certified_within.position * 1e3
+        if answer.deepest is not None:
+            yield "deepest [mm]", answer.deepest * 1e3
+            if self._plan.strokes == "asked":
+                yield "deepest beyond depth [mm]", (answer.deepest - answer.hole.depth) * 1e3
+
+    def show(self) -> None:
+        """Print it."""
+        terminal.out().print(self.table())
+        terminal.print_lines(self.lines())
+
+    def table(self) -> Table:
+        """A row a hole or, of many, a row a figure."""
+        if len(self._rows) <= ROWS:
+            return tables.plan_table(replace(self._plan, holes=tuple(self._rows)))
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+        table.add_column(Text("over all holes"))
+        for heading in ("least", "mean", "greatest"):
+            table.add_column(Text(heading), justify="right")
+        for name, figure in self._figures.items():
+            if figure.count:
+                table.add_row(Text(name), *map(Text, figure.cells()))
+        return table
+
+    def lines(self) -> list[Text]:
+        """How many holes of which kind, where they are many; what the deepest strokes are held to; what was found."""
+        lines = []
+        if len(self._rows) > ROWS:
+            kinds = ", ".join(f"{count} {status}" for status, count in sorted(self._status.items()))
+            counts = ", ".join(f"{count} with {n} reversals" for n, count in sorted(self._reversals.items()))
+            lines = [Text(f"{sum(self._status.values())} holes: {kinds}; {counts or 'no motion'}")]
+        if self._bounded:
+            lines.append(Text(f"optimum of straight legs: proven for {self._proven} of {self._bounded} holes"))
+        if self._figures["deepest [mm]"].count:
+            lines.append(Text(f"deepest without a reversal: {how_deep(self._plan.settings)}"))
+        return lines + tables.finding_lines(self._findings)
+
+
+class _Figure:
+    """Least, mean and greatest of a figure, and where."""
+
+    def __init__(self) -> None:
+        self.count, self.total = 0, 0.0
+        self.least, self.greatest = (np.inf, ""), (-np.inf, "")
+
+    def add(self, value: float, hole: str) -> None:
+        self.count, self.total = self.count + 1, self.total + value
+        if value < self.least[0]:
+            self.least = value, hole
+        if value > self.greatest[0]:
+            self.greatest = value, hole
+
+    def cells(self) -> tuple[str, str, str]:
+        (least, at_least), (greatest, at_most) = self.least, self.greatest
+        return f"{least:.4g} ({at_least})", f"{self.total / self.count:.4g}", f"{greatest:.4g} ({at_most})"
+
+
+def how_deep(settings: Settings) -> str:
+    """What the deepest strokes are held to, to be said wherever they are shown."""
+    twist = f", twist at most {np.rad2deg(settings.max_twist) / 1e3:g} deg/mm" if settings.legs == "free" else ""
+    rate = (
+        f"every joint moves {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm or more at every point"
+        if settings.min_rate
+        else ""
+    )
+    spin = "spin periodic" if settings.psi_bound is None else f"spin within +-{np.rad2deg(settings.psi_bound):g} deg"
+    return f"{settings.legs} legs{twist}; {rate or 'no motion threshold'}; {spin}"

@@ -1,0 +1,196 @@
+"""What the terminal shows of a plan, its findings and the robots, as rich's tables and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from zerorev.files.conversion import robot_data
+from zerorev.model.job import Settings
+from zerorev.model.plan import Finding, HolePlan, Level, Plan, Score, named_holes
+from zerorev.model.robot import Robot
+
+__all__ = [
+    "finding_lines",
+    "hole_findings",
+    "plan_table",
+    "robot_heading",
+    "robot_lines",
+    "robot_sheet",
+    "robot_table",
+    "robots_table",
+    "slowest",
+]
+
+PROOFS = {"certified": "green", "undecided": "yellow", "refuted": "bold red"}
+LEVELS = {"error": "bold red", "warning": "yellow", "info": "cyan"}
+MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding; what is left is counted
+
+
+def plan_table(plan: Plan) -> Table:
+    """One row a hole: reversals, travel, branch, spins, slowest joint, deepest stroke, and the outcome of the check."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column(Text("hole"), no_wrap=True)
+    table.add_column(Text("reversals\nbaseline → plan"), justify="right")
+    table.add_column(Text("travel\n[deg]"), justify="right")
+    table.add_column(Text("branch"), justify="right")
+    table.add_column(Text("spins\n[deg]"), justify="right")
+    table.add_column(Text("slowest joint\n[deg/mm]"), justify="right")
+    table.add_column(Text("deepest\n[mm]"), justify="right")
+    table.add_column(Text("verified"))
+    for hole in plan.holes:
+        table.add_row(Text(hole.hole.id), *_cells(plan, hole))
+    return table
+
+
+def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
+    motion, score = hole.motion, hole.score
+    if motion is None or score is None:
+        cells = ("infeasible", *"––––", _deepest(hole), "–")
+        return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
+    before = "?" if hole.baseline is None else str(hole.baseline.reversals)
+    spins = "  ".join(_number(spin, 2) for spin in np.rad2deg(motion.profile.psi))
+    checked = hole.verified
+    verdict = Text("no", style="yellow") if checked is None else Text("yes", style="green")
+    if checked is not None and not checked.passed:
+        verdict = Text("FAILED", style="bold red")
+    if hole.certificate is not None:
+        verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
+    if (within := hole.certified_within) is not None:
+        verdict.append(f" within {within.position * 1e3:.6g} mm, {np.rad2deg(within.rotation):.6g} deg", "green")
+    slow = slowest(score, plan.settings)
+    return [
+        Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
+        Text(_number(np.rad2deg(score.travel), 1)),
+        Text(str(motion.branch)),
+        Text(spins),
+        Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
+        Text(_deepest(hole)),
+        verdict,
+    ]
+
+
+def _deepest(hole: HolePlan) -> str:
+    return "–" if hole.deepest is None else _number(hole.deepest * 1e3, 1)
+
+
+def finding_lines(findings: Iterable[Finding]) -> list[Text]:
+    """Findings, the gravest first; those that say the same share a line, and of many of a kind a few stand for all."""
+    kinds: dict[tuple[str, str], dict[str, list[str]]] = {}
+    for finding in findings:
+        messages = kinds.setdefault((finding.level, finding.kind), {})
+        messages.setdefault(finding.message, []).extend([] if finding.hole is None else [finding.hole])
+    lines = []
+    width = max((len(kind) for _, kind in kinds), default=0) + 1
+    for (level, kind), messages in sorted(kinds.items(), key=lambda entry: list(LEVELS).index(entry[0][0])):
+        shown = list(messages.items())[: MESSAGES_SHOWN[level]]
+        for message, holes in shown:
+            where = f"{named_holes(holes)}: " if holes else ""
+            lines.append(Text.assemble((f"{level:<8}", LEVELS[level]), (f"{kind:<{width}}", "bold"), where, message))
+        if rest := [hole for _, holes in list(messages.items())[len(shown) :] for hole in holes]:
+            lines.append(Text.assemble(" " * (8 + width), (f"and likewise {named_holes(rest)}", "dim")))
+    return lines
+
+
+def hole_findings(hole: HolePlan) -> list[Finding]:
+    """What is to be said of one hole: its findings, what its check found wrong, and what its certificate left open."""
+    found = list(hole.findings)
+    if hole.verified is not None and not hole.verified.passed:
+        failures = hole.verified.failures or ("the check failed",)
+        failed = [Finding("error", "verification", failure, hole.hole.id) for failure in failures]
+        found += [finding for finding in failed if finding not in found]
+    if hole.certificate is not None:
+        level: Level = "error" if hole.certificate.verdict == "refuted" else "warning"
+        found += [Finding(level, "certificate", reason, hole.hole.id) for reason in hole.certificate.reasons]
+    return found
+
+
+def slowest(score: Score | None, settings: Settings) -> tuple[float, int] | None:
+    """Rate [rad/m] and index of the slowest joint that does not reverse, by the rule of the motion threshold."""
+    if score is None:
+        return None
+    rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
+    steady = [(float(rates[i]), i) for i in range(6) if score.reversals_per_joint[i] == 0]
+    return min((pair for pair in steady if np.isfinite(pair[0])), default=None)
+
+
+def robots_table(robots: Iterable[Robot]) -> Table:
+    """One row a robot: name, maker, model, reach of the wrist centre, joint limits."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for heading in ("name", "maker", "model"):
+        table.add_column(Text(heading), no_wrap=True)
+    table.add_column(Text("reach of the\nwrist [mm]"), justify="right")
+    table.add_column(Text("joint limits [deg]"))
+    for robot in robots:
+        limits = np.rad2deg(np.array([robot.limits.lower, robot.limits.upper])).T
+        ranges = "  ".join(f"{name} {_range(*pair)}" for name, pair in zip(robot.joint_names, limits, strict=True))
+        table.add_row(robot.name, robot.manufacturer, robot.model, f"{wrist_reach(robot) * 1e3:.0f}", ranges)
+    return table
+
+
+def wrist_reach(robot: Robot) -> float:
+    """Greatest distance [m] of the wrist centre from axis 1: the arm stretched out at the height of the shoulder."""
+    arm = robot.arm
+    return float(np.hypot(arm.a1 + arm.c2 + np.hypot(arm.a2, arm.c3), arm.b))
+
+
+def robot_sheet(robot: Robot) -> dict[str, Any]:
+    """The robot as plain data: what a plan file holds of it, with sources and caveats."""
+    return robot_data(robot) | {
+        "wrist_reach_mm": round(wrist_reach(robot) * 1e3, 6),
+        "sources": dict(robot.sources),
+        "second_sources": list(robot.second_sources),
+        "caveats": list(robot.caveats),
+    }
+
+
+def robot_heading(robot: Robot) -> Text:
+    """Name, maker and model, and the lengths of the arm."""
+    lengths = "  ".join(
+        f"{name} {_plain(getattr(robot.arm, name) * 1e3)}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+    )
+    return Text.assemble(
+        (robot.name, "bold"), f"   {robot.manufacturer} {robot.model}\n\n", ("lengths [mm]   ", "bold"), lengths,
+        ("\nwrist reach    ", "bold"), f"{wrist_reach(robot) * 1e3:.0f} mm from axis 1",
+    )  # fmt: skip
+
+
+def robot_table(robot: Robot) -> Table:
+    """One row a joint: sign, offset, limits, speed."""
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column(Text("joint"))
+    for heading in ("sign", "offset\n[deg]", "lower\n[deg]", "upper\n[deg]", "speed\n[deg/s]"):
+        table.add_column(Text(heading), justify="right")
+    limits = robot.limits
+    for i, name in enumerate(robot.joint_names):
+        angles = np.rad2deg([robot.arm.offset[i], limits.lower[i], limits.upper[i], limits.speed[i]])
+        table.add_row(name, f"{robot.arm.sign[i]:+g}", *(_plain(angle) for angle in angles))
+    return table
+
+
+def robot_lines(robot: Robot) -> list[Text]:
+    """Where each group of numbers comes from, what else was compared, and what to beware of."""
+    lines = [Text("where the numbers come from", style="bold")]
+    lines += [Text(f"  {group:<12} {source}") for group, source in robot.sources.items()]
+    for heading, entries in (("compared with", robot.second_sources), ("beware", robot.caveats)):
+        if entries:
+            lines += [Text(""), Text(heading, style="bold"), *(Text(f"  - {entry}") for entry in entries)]
+    return lines
+
+
+def _range(lower: float, upper: float) -> str:
+    lower, upper = round(float(lower), 1), round(float(upper), 1)
+    return f"±{upper:g}" if lower == -upper else f"{lower:g}..{upper:g}"
+
+
+def _plain(value: float) -> str:
+    return f"{round(float(value), 3) + 0.0:g}"
+
+
+def _number(value: float, digits: int) -> str:
+    return f"{round(float(value), digits) + 0.0:.{digits}f}"

@@ -1,0 +1,1 @@
+"""The thesis' own method and its reproduction: swarm and peers, sampled objective, parameter map, figures."""

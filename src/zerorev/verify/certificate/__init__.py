@@ -1,0 +1,1 @@
+"""Proofs in ball arithmetic: of a plan, of a program, of every placement within a tolerance."""

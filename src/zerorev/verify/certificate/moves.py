@@ -1,0 +1,92 @@
+"""The moves of a program, as it is printed, as straight moves in ball arithmetic.
+
+A controller that holds its orientation control at variable (KUKA: `$ORI_TYPE=#VAR`) takes the tool straight from the
+one printed point to the next, and turns it evenly, in proportion to the way, about the one axis by which the one
+printed orientation goes over into the other, the short way round. The first move sets out from where the printed axis
+values place the tool.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+from flint import arb
+
+from zerorev.model.hole import Hole
+from zerorev.model.robot import ArmGeometry
+from zerorev.model.written import Six, WrittenHole, WrittenProgram
+from zerorev.verify.certificate.arm import flange_at
+from zerorev.verify.certificate.path import Motion, Rig, Segment, motion_of
+from zerorev.verify.certificate.vector import Axes, Vector, axis_angle, combined, dot, onto, vector
+
+__all__ = ["written_motion"]
+
+
+def written_motion(
+    arm: ArmGeometry, program: WrittenProgram, written: WrittenHole, hole: Hole, lead: int, corner: int
+) -> Motion:
+    """The motion of one hole of a program.
+
+    Args:
+        arm: geometry.
+        program: whose frames the points are given in.
+        written: the moves.
+        hole: as planned; only to tell stand-offs in messages.
+        lead: how many moves lead to the start of the stroke.
+        corner: how many moves lead to the corner.
+    """
+    tip_in_flange, tool = _frame(program.tool_mm_deg)
+    part, base = _frame(program.base_mm_deg)
+    in_tool = tuple((tool[0][k], tool[1][k], tool[2][k]) for k in range(3))  # axes of the flange
+    wrist_in_flange = combined((tip_in_flange, arb(-1)), ((arb(0), arb(0), arb(-arm.c4)), arb(1)))
+
+    origin, flange = flange_at(arm, [_rad(angle) for angle in written.axes_deg])
+    tips = [combined((origin, arb(1)), (onto(flange, tip_in_flange), arb(1)))]
+    flanges = [flange]
+    for move in written.moves:
+        tip, axes = _frame(move.point_mm_deg)
+        tips.append(combined((part, arb(1)), (onto(base, tip), arb(1))))
+        x, y, z = (onto(base, onto(axes, axis)) for axis in in_tool)
+        flanges.append((x, y, z))
+    standoff = [dot(combined((tip, arb(1)), (vector(hole.target), arb(-1))), vector(-hole.direction)) for tip in tips]
+    segments = []
+    for k, move in enumerate(written.moves):
+        way = combined((tips[k + 1], arb(1)), (tips[k], arb(-1)))
+        same = k > 0 and move.point_mm_deg[3:] == written.moves[k - 1].point_mm_deg[3:]
+        axis, angle = (flanges[k][2], arb(0)) if same else axis_angle(flanges[k], flanges[k + 1])
+        leg = "lead-in" if k < lead else "plunge" if k < corner else "retract"
+        blend = "blended corner" if k + 1 == corner else "blend"
+        segments.append(
+            Segment(
+                where=f"on the {leg} (line {move.line})",
+                bend=f"in the {blend} (line {move.line})",
+                begin=tips[k],
+                end=tips[k + 1],
+                rig=Rig(onto(flanges[k], wrist_in_flange), flanges[k]),
+                axis=axis,
+                angle=(arb(0), angle),
+                standoff=(standoff[k], standoff[k + 1]),
+                length=dot(way, way).sqrt(),
+                radius=_metre(move.blend_mm),
+            )
+        )
+    return motion_of(segments, lead, corner)
+
+
+def _metre(length_mm: Decimal) -> arb:
+    return arb(str(length_mm)) / 1000
+
+
+def _rad(angle_deg: Decimal) -> arb:
+    return arb(str(angle_deg)) * arb.pi() / 180
+
+
+def _frame(values_mm_deg: Six) -> tuple[Vector, Axes]:
+    """Origin [m] and axes of a frame: R = Rz(A) Ry(B) Rx(C)."""
+    x, y, z = (_metre(length) for length in values_mm_deg[:3])
+    (sa, ca), (sb, cb), (sc, cc) = (_rad(angle).sin_cos() for angle in values_mm_deg[3:])
+    return (x, y, z), (
+        (ca * cb, sa * cb, -sb),
+        (ca * sb * sc - sa * cc, sa * sb * sc + ca * cc, cb * sc),
+        (ca * sb * cc + sa * sc, sa * sb * cc - ca * sc, cb * cc),
+    )

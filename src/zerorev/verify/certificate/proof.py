@@ -1,0 +1,96 @@
+"""From a motion to its certificate: a walk along the legs and the blends, and the sum of what it has shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Literal
+
+import numpy as np
+from flint import arb
+
+from zerorev.model._arrays import Array
+from zerorev.model.plan import Certificate
+from zerorev.model.robot import Robot
+from zerorev.verify.certificate.arm import Setting, posture_of
+from zerorev.verify.certificate.claims import Proven
+from zerorev.verify.certificate.joints import Joints
+from zerorev.verify.certificate.path import Arc, Motion
+from zerorev.verify.certificate.walk import LostError, Slowest, Walk
+
+__all__ = ["nothing", "prove"]
+
+PIECES = 2000  # looked at before giving up, and so many more a hundred arcs
+ROUNDING = 2e-12  # relative: more than the 13 digits of a plan file can add to a bound
+
+
+def prove(
+    robot: Robot,
+    motion: Motion,
+    stated: Array,
+    reversing: Iterable[int] = (),
+    untrue: Callable[[Proven], Iterable[str]] = lambda proven: (),
+) -> Certificate:
+    """Prove or refute that a motion reverses no joint.
+
+    Args:
+        robot: the arm.
+        motion: all of it; the least rates are told of the stroke, not of what comes before it.
+        stated: controller angles with turns [rad], shape (n, 6): at the begin, and if n > 1 at the breakpoints that
+            follow. The first row gives the posture and the turns.
+        reversing: joints that are said to reverse, counted from 0: they are not certified.
+        untrue: one sentence for each statement about the motion that does not hold, from what is proven of it.
+    """
+    posture = posture_of(robot.arm, stated[0])
+    if posture is None:
+        return nothing("undecided", ("the posture of the first joints is singular, or all but so",))
+    setting = Setting(robot.arm, posture)
+    walk = Walk(setting, robot.joint_names, set(range(6)), PIECES * (1 + len(motion.legs) // 100))
+    walk.followed -= (leaving := set(reversing))
+    walk.undecided += [f"{robot.joint_names[i]} is claimed to reverse: not certified" for i in sorted(leaving)]
+    joints = Joints(robot, setting, stated)
+    before, stroke, blended = Slowest(), Slowest(), Slowest()
+    try:
+        ends = [joints.begin(motion.legs[0])]
+        for k, arc in enumerate(motion.legs):
+            ends.append(joints.end(arc, walk.along(arc, ends[-1], before if k < motion.start else stroke)))
+        for arc, first in motion.blends:
+            cut = joints.end(arc, walk.along(arc, ends[first], blended))
+            _same_turns(walk, arc, cut, ends[first + 2])
+    except LostError as lost:
+        (walk.refuted if lost.proven else walk.undecided).append(lost.reason)
+        nan = np.full(6, np.nan)
+        return _outcome(walk, joints, nan, nan, nan)
+
+    walk.settle_pauses()
+    room = joints.limit_distance()
+    if not joints.refuted and (room < 0).any():
+        near = [name for name, distance in zip(walk.names, room, strict=True) if distance < 0]
+        walk.undecided.append(f"{', '.join(near)}: whether a limit is passed could not be decided")
+    knots = ends[motion.start], ends[motion.turn], ends[-1]
+    walk.refuted += untrue(
+        Proven(walk.names, walk.followed, knots, motion.leg_lengths, stroke.met, joints.limit_distance_met())
+    )
+    steady = np.isin(np.arange(6), list(walk.followed))
+    min_rate = np.where(steady, stroke.bound * (1 - ROUNDING), np.nan)
+    blend_min_rate = np.where(steady & bool(motion.blends), blended.bound * (1 - ROUNDING), np.nan)
+    return _outcome(walk, joints, min_rate, blend_min_rate, room - ROUNDING * np.abs(room))
+
+
+def nothing(verdict: Literal["refuted", "undecided"], reasons: tuple[str, ...]) -> Certificate:
+    """A certificate of nothing, and why."""
+    nan = np.full(6, np.nan)
+    return Certificate(verdict, 0, nan, nan, nan, reasons)
+
+
+def _same_turns(walk: Walk, arc: Arc, blended: list[arb], leg: list[arb]) -> None:
+    """Where a blend joins its leg again, each joint must be where the leg has brought it."""
+    for name, there, here in zip(walk.names, blended, leg, strict=True):
+        if abs(there - here) > 1:
+            walk.refuted.append(f"{arc.where} {name} ends up whole turns away from where the leg brings it")
+
+
+def _outcome(walk: Walk, joints: Joints, min_rate: Array, blend_min_rate: Array, room: Array) -> Certificate:
+    refuted = (*walk.refuted, *joints.refuted)
+    verdict: Literal["certified", "refuted", "undecided"]
+    verdict = "refuted" if refuted else "undecided" if walk.undecided else "certified"
+    return Certificate(verdict, walk.pieces, min_rate, blend_min_rate, room, (*refuted, *walk.undecided))

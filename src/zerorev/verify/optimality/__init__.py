@@ -1,0 +1,1 @@
+"""Proofs of optimality, checked in ball arithmetic."""

@@ -1,0 +1,88 @@
+"""What the terminal shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from rich.console import Console
+
+from zerorev.files.io import read_robot
+from zerorev.model.plan import Finding, Verification
+from zerorev.report.words import tables
+
+
+def shown(*things):
+    console = Console(width=160, record=True, quiet=False, file=open("/dev/null", "w"))  # noqa: SIM115
+    for thing in things:
+        console.print(thing)
+    console.file.close()
+    return console.export_text()
+
+
+def test_one_row_a_hole(published):
+    text = shown(tables.plan_table(published))
+    for part in ("6 → 0", "5 → 0", "107.1", "98.5", "90.5", "180.00  178.10  142.49", "infeasible", "0.0018 A6"):
+        assert part in text
+
+
+def test_units_survive_rich_s_markup(published):
+    text = shown(tables.plan_table(published))
+    assert "[deg]" in text
+    assert "[deg/mm]" in text
+
+
+def test_verdicts(published):
+    checks = [
+        Verification(passed, 1, 1, (0,) * 6, 0, 0, 0, 0, failures) for passed, failures in ((True, ()), (False, ("x",)))
+    ]
+    holes = tuple(replace(hole, verified=check) for hole, check in zip(published.holes[:2], checks, strict=True))
+    plan = replace(published, holes=holes)
+    text = shown(tables.plan_table(plan))
+    assert "yes" in text
+    assert "FAILED" in text
+    failed = [Finding("error", "verification", "x", "position 2")]
+    assert tables.hole_findings(replace(plan.holes[1], findings=())) == failed
+    assert tables.hole_findings(replace(plan.holes[1], findings=tuple(failed))) == failed
+
+
+def test_where_all_joints_reverse_there_is_no_slowest(make_plan):
+    plan = make_plan(psi_deg=(30, -40, 35))
+    assert plan.holes[0].score.reversals_per_joint == (1,) * 6
+    assert shown(tables.plan_table(plan)).rstrip().splitlines()[-1].split()[-2] == "–"
+
+
+class TestFindings:
+    def test_the_gravest_first(self):
+        findings = [Finding("info", "a", "one"), Finding("error", "b", "two"), Finding("warning", "c", "three")]
+        assert [line.plain.split()[0] for line in tables.finding_lines(findings)] == ["error", "warning", "info"]
+
+    def test_the_same_said_of_many_holes_is_one_line(self):
+        lines = tables.finding_lines([Finding("info", "blend", "short", f"h{n}") for n in range(100)])
+        assert len(lines) == 1
+        assert "holes h0, h1, h2, h3, h4, h5 and 94 more: short" in lines[0].plain
+
+    def test_many_of_a_kind_are_counted(self):
+        lines = tables.finding_lines([Finding("warning", "margin", f"slow by {n}", f"h{n}") for n in range(100)])
+        assert len(lines) == 4
+        assert "and likewise holes h3, h4, h5, h6, h7, h8 and 91 more" in lines[-1].plain
+
+    def test_brackets_are_no_markup(self):
+        (line,) = tables.finding_lines([Finding("error", "k", "[red]m[/red]", "[h]")])
+        assert "hole [h]: [red]m[/red]" in shown(line)
+
+
+class TestRobots:
+    def test_reach_of_the_thesis_robot(self, robot):
+        assert tables.wrist_reach(robot) == pytest.approx(0.7259, abs=1e-4)  # its data sheet: 726 mm
+
+    def test_every_number_with_its_source(self):
+        robot = read_robot("kuka_kr6_r700_2")
+        text = shown(tables.robot_heading(robot), tables.robot_table(robot), *tables.robot_lines(robot))
+        for part in ("c2 335", "-190", "156", "540", "kroshu/kuka_robot_descriptions", "S6RRRRRR10", "beware"):
+            assert part in text
+
+    def test_sheet_is_plain_data(self, any_robot):
+        sheet = tables.robot_sheet(any_robot)
+        assert sheet["geometry_mm"].keys() == {"a1", "a2", "b", "c1", "c2", "c3", "c4"}
+        assert sheet["sources"]
