@@ -9,12 +9,12 @@ import numba
 import numpy as np
 import pytest
 
-from zerorev.maps.cells import KINDS
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.map_task import Question
 from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
+from zerorev.model.quantity import quantity
 from zerorev.motion.evaluation import Evaluation, meets_threshold
 from zerorev.planning.hole import plan
 from zerorev.search.rank import Candidate, Order
@@ -132,5 +132,5 @@ def test_free_legs_below_the_threshold_keep_the_most_that_is_found(robot, tool, 
     (finding,) = planned.findings
     assert finding.message.endswith("no motion with so few reversals was found that keeps more")
     question = Question(robot, tool, "greatest_margin", settings, "base_y", depth)
-    mapped = KINDS["greatest_margin"].solve(question, hole, 0)
+    mapped = quantity("greatest_margin").solve(question, hole, 0)
     assert mapped.value >= margin * (1 - 1e-9)

@@ -12,7 +12,6 @@ from typing import Any
 
 from zerorev.errors import InputError
 from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
-from zerorev.files.map_schema import MapFile
 from zerorev.files.output import write_text
 from zerorev.files.part import part_document
 from zerorev.files.plan_conversion import plan_from
@@ -185,6 +184,8 @@ def write_plan(plan: Plan, path: str | Path) -> None:
 
 def write_schemas(folder: str | Path) -> None:
     """Write the JSON Schemas of job, plan, depth and map files, job.schema.json and so on, into a folder."""
+    from zerorev.files.map_schema import MapFile
+
     forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile, "depth": DepthFile, "map": MapFile}
     for name, form in forms.items():
         schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"} | form.model_json_schema()

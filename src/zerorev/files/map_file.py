@@ -16,7 +16,8 @@ from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document
 from zerorev.model._arrays import Array, unit
 from zerorev.model.job import Settings
-from zerorev.model.map_task import SWARMS, MapTask, Question, cone, sphere
+from zerorev.model.map_task import MapTask, Question, cone, sphere
+from zerorev.model.quantity import in_words, quantity
 
 __all__ = ["read_map_file"]
 
@@ -53,10 +54,9 @@ def _question(form: MapFile, document: Document, folder: Path) -> Question:
         robot = read_robot(form.robot, folder)
     with inside(document.place(("tool",))):
         tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
-    if form.seed is not None and form.quantity not in SWARMS:
-        raise InputError(
-            f"is not looked at by {form.quantity}", where="seed", accepted=f"for {', '.join(SWARMS)} alone"
-        )
+    if form.seed is not None and not quantity(form.quantity).seeded:
+        accepted = f"for {in_words(lambda each: each.seeded, 'and')} alone"
+        raise InputError(f"is not used by {form.quantity}", where="seed", accepted=accepted)
     settings = Settings(
         min_rate=float(rad_per_m(form.min_rate_deg_per_mm)),
         psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),

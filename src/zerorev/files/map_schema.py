@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from zerorev.files.schema import Depth, Form, Length, Name, Rate, SpinBound, Three, ToolForm, Twist, kind
+from zerorev.model.quantity import in_words, quantities
 
 __all__ = ["MOST_CELLS", "ConeForm", "ConesForm", "MapFile", "RangeForm", "SphereForm", "TargetsForm"]
 
 MOST_CELLS = 100_000_000
 
-Quantity = Literal[
-    "deepest", "fewest_reversals", "least_travel", "greatest_margin", "twist_spread", "thesis_bisection",
-    "thesis_stepping",
-]  # fmt: skip
+if TYPE_CHECKING:
+    QuantityName = str
+else:
+    QuantityName = Literal[tuple(quantities())]
 Count = Annotated[int, Field(ge=1, le=100_000)]
 
 
@@ -99,14 +100,10 @@ class MapFile(Form):
         | Annotated[SphereForm, Tag("<sphere>")],
         Discriminator(_directions),
     ] = Field(description="a list of vectors into the material, base frame; or a mapping of cone, or of sphere")
-    quantity: Quantity = Field(
-        default="deepest",
-        description="deepest, fewest_reversals, least_travel, greatest_margin, twist_spread, thesis_bisection or"
-        " thesis_stepping",
-    )
+    quantity: QuantityName = Field(default="deepest", description=in_words(lambda each: True, "or"))
     depth_mm: Depth | None = Field(
         default=None,
-        description="a number above 0 [mm]: the stroke; for fewest_reversals, least_travel and greatest_margin alone",
+        description=f"a number above 0 [mm]: the stroke; for {in_words(lambda each: each.needs_depth, 'and')} alone",
     )
     legs: Literal["straight", "free"] = Field(
         default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
@@ -123,5 +120,5 @@ class MapFile(Form):
     )
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = Field(
         default=None,
-        description="a whole number, 0 or more: of the swarm; for thesis_bisection and thesis_stepping alone",
+        description=f"a whole number, 0 or more: of the swarm; for {in_words(lambda each: each.seeded, 'and')} alone",
     )

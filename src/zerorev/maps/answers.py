@@ -13,16 +13,15 @@ import numpy.typing as npt
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
+from zerorev.model.quantity import Quantity, quantities
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = [
-    "QUANTITIES",
     "Cells",
     "Difference",
     "Field",
-    "Quantity",
     "best_cells",
     "cells_of",
     "difference",
@@ -32,46 +31,6 @@ __all__ = [
 SAME_MM = 1e-3  # targets that are nearer to each other are one
 SAME_DIRECTION = 1e-6
 SPINS = ("psi_start_deg", "psi_target_deg", "psi_end_deg")
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """What a map holds in each cell.
-
-    Attributes:
-        variable: its name in the dataset.
-        title: in words.
-        unit: of the number.
-        digits: after the point, as shown.
-        more_is_better: whether a greater number is the better one.
-        nothing: what a cell without an answer counts as beside one that has one; NaN: the two are not compared.
-    """
-
-    variable: str
-    title: str
-    unit: str
-    digits: int
-    more_is_better: bool
-    nothing: float = np.nan
-
-    @property
-    def label(self) -> str:
-        """For an axis."""
-        return f"{self.title} [{self.unit}]"
-
-    def shown(self, value: float) -> str:
-        """A number with its unit."""
-        return f"{value + 0.0:.{self.digits}f}" + ("" if self.unit == "1" else f" {self.unit}")
-
-
-QUANTITIES = (
-    Quantity("deepest_mm", "deepest stroke with zero reversals", "mm", 1, True, 0.0),
-    Quantity("reversals", "fewest reversals", "1", 0, False),
-    Quantity("travel_deg", "least travel", "deg", 1, False),
-    Quantity("margin_deg_per_mm", "greatest margin", "deg/mm", 4, True),
-    Quantity("twist_spread_deg_per_mm", "twist spread", "deg/mm", 3, False),
-)
-"""What a map may hold; in a dataset with several of them the first is meant."""
 
 
 @dataclass(frozen=True)
@@ -119,12 +78,12 @@ def cells_of(found: Dataset) -> Cells:
     Raises:
         InputError: the dataset holds none of the quantities that a map may.
     """
-    quantity = next((each for each in QUANTITIES if each.variable in found), None)
-    if quantity is not None:
-        title = str(found[quantity.variable].attrs.get("long_name", quantity.title)).partition(";")[0]
-        quantity = replace(quantity, title=title)
-    else:
-        raise InputError("holds no quantity of a map", accepted=", ".join(each.variable for each in QUANTITIES))
+    quantity = next((each for each in quantities().values() if each.variable in found), None)
+    if quantity is None:
+        accepted = ", ".join(dict.fromkeys(each.variable for each in quantities().values()))
+        raise InputError("holds no quantity of a map", accepted=accepted)
+    title = str(found[quantity.variable].attrs.get("long_name", quantity.title)).partition(";")[0]
+    quantity = replace(quantity, title=title)
     places = ("point",) if "point" in found.dims else ("x", "y", "z")
     axes = [np.asarray(found[name].values, dtype=float) for name in ("x_mm", "y_mm", "z_mm")]
     if len(places) == 3:

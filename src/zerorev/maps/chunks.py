@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from zerorev.maps.cells import KINDS, Block
+from zerorev.maps.cells import Block
 from zerorev.model.map_task import MapTask
+from zerorev.model.quantity import quantity
 
 __all__ = ["Chunks"]
 
@@ -30,7 +31,7 @@ class Chunks:
     @classmethod
     def of(cls, task: MapTask) -> Chunks:
         """Chunks of so many cells as suit the quantity, long along the last dimensions; the same for the same map."""
-        room = max(1, min(KINDS[task.question.quantity].cells, task.cells // LEAST_CHUNKS))
+        room = max(1, min(quantity(task.question.quantity).chunk, task.cells // LEAST_CHUNKS))
         shape: list[int] = []
         for size in reversed(task.shape):
             shape.insert(0, min(size, room))

@@ -8,8 +8,9 @@ from typing import Literal
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.maps.answers import Field, Quantity
+from zerorev.maps.answers import Field
 from zerorev.model._arrays import Array
+from zerorev.model.quantity import Quantity
 
 __all__ = ["AXES", "Across", "Plane", "is_grid", "planes_of", "view_flips"]
 

@@ -24,7 +24,8 @@ from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.replan import question_of
 from zerorev.maps.sound import MARK, check_grid, check_store
-from zerorev.model.map_task import NEED_DEPTH, SWARMS, MapTask
+from zerorev.model.map_task import MapTask
+from zerorev.model.quantity import quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -228,10 +229,10 @@ def _skeleton(task: MapTask) -> Dataset:
         "psi_reference": reference if isinstance(reference, str) else list(reference),
         "settings": {name: settings[name] for name in SETTINGS},
     }
-    if question.quantity in NEED_DEPTH:
+    if quantity(question.quantity).needs_depth:
         assert question.depth is not None
         head["depth_mm"] = plain(float(mm(question.depth)))
-    if question.quantity in SWARMS:
+    if quantity(question.quantity).seeded:
         head["seed"] = question.seed
     if task.ids is not None:
         head["ids"] = list(task.ids)

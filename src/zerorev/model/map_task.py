@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -13,17 +12,11 @@ from zerorev.errors import InputError
 from zerorev.model._arrays import Array, unit
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.job import Settings
+from zerorev.model.quantity import in_words, quantity
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["NEED_DEPTH", "SWARMS", "MapTask", "Quantity", "Question", "cone", "sphere"]
-
-Quantity = Literal[
-    "deepest", "fewest_reversals", "least_travel", "greatest_margin", "twist_spread", "thesis_bisection",
-    "thesis_stepping",
-]  # fmt: skip
-NEED_DEPTH = ("fewest_reversals", "least_travel", "greatest_margin")
-SWARMS = ("thesis_bisection", "thesis_stepping")
+__all__ = ["MapTask", "Question", "cone", "sphere"]
 
 NOMINAL_DEPTH = 1e-3  # [m] of a hole whose depth is not looked at
 GOLDEN_TURN = np.pi * (3 - np.sqrt(5))
@@ -37,7 +30,7 @@ class Question:
     Attributes:
         robot: the arm.
         tool: the drill on its flange.
-        quantity: which number is wanted.
+        quantity: which number is wanted (`model.quantity`).
         settings: whose `min_rate`, `psi_bound`, `legs` and `max_twist` count.
         psi_reference: `base_y`, `nearest_base`, or a vector in the base frame.
         depth: stroke [m] where the quantity needs one, else None.
@@ -46,7 +39,7 @@ class Question:
 
     robot: Robot
     tool: Tool
-    quantity: Quantity = "deepest"
+    quantity: str = "deepest"
     settings: Settings = field(default_factory=Settings)
     psi_reference: str | tuple[float, ...] = "base_y"
     depth: float | None = None
@@ -54,18 +47,14 @@ class Question:
 
     def __post_init__(self) -> None:
         """Check that what the quantity needs is there, and nothing that it does not look at."""
-        if self.quantity not in get_args(Quantity):
-            raise InputError(
-                f"unknown quantity '{self.quantity}'", where="quantity", accepted=", ".join(get_args(Quantity))
-            )
-        if (self.depth is None) == (self.quantity in NEED_DEPTH):
-            what = "is missing" if self.depth is None else f"is not looked at by {self.quantity}"
-            raise InputError(
-                what, where="depth_mm", accepted=f"a stroke for {', '.join(NEED_DEPTH)}; none for the others"
-            )
+        wanted = quantity(self.quantity)
+        if (self.depth is None) == wanted.needs_depth:
+            what = "is missing" if self.depth is None else f"is not used by {self.quantity}"
+            accepted = f"a stroke for {in_words(lambda each: each.needs_depth, 'and')}; none for the others"
+            raise InputError(what, where="depth_mm", accepted=accepted)
         if self.depth is not None and not 0 < self.depth < np.inf:
             raise InputError(f"a depth of {self.depth * 1e3:g} mm", where="depth_mm", accepted="a finite depth above 0")
-        if self.quantity in (*SWARMS, "twist_spread") and self.settings.legs == "free":
+        if self.settings.legs == "free" and not wanted.free_legs:
             raise InputError("free", where="legs", accepted=f"straight: {self.quantity} knows no other")
 
     def hole(self, target: Array, direction: Array, name: str = "cell", depth: float | None = None) -> Hole:

@@ -17,7 +17,9 @@ from zerorev.model.tool import Tool
 from zerorev.thesis.sampled import SampledObjective, Weighing
 from zerorev.thesis.swarm import TABLE_4, run_swarm
 
-__all__ = ["RANGE_MM", "RESOLUTION_MM", "STEP_MM", "Stroke", "bisect", "step_down", "thesis_stroke"]
+__all__ = ["RANGE_MM", "RESOLUTION_MM", "STEP_MM", "Stroke", "Way", "bisect", "step_down", "thesis_stroke"]
+
+Way = Literal["bisection", "stepping"]
 
 RANGE_MM = (0.0, 200.0)  # sec. 4.6: "bounded between 0-200mm"
 RESOLUTION_MM = 1.0
@@ -39,9 +41,7 @@ class Stroke:
     branch: int | None = None
 
 
-def thesis_stroke(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, way: Literal["bisection", "stepping"], seed: int
-) -> Stroke:
+def thesis_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings, way: Way, seed: int) -> Stroke:
     """The deepest stroke of a hole as the thesis looks for it: a lower bound, as a swarm may miss what is there.
 
     Args:

@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d import Axes3D
 
-from zerorev.maps.answers import Quantity
 from zerorev.maps.planes import AXES, Across, Plane, view_flips
 from zerorev.model._arrays import Array
+from zerorev.model.quantity import Quantity
 from zerorev.report.figures import style
 
 __all__ = [

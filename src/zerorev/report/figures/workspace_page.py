@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.colors import to_hex
 
-from zerorev.maps.answers import SAME_DIRECTION, Cells, Quantity, cells_of
+from zerorev.maps.answers import SAME_DIRECTION, Cells, cells_of
 from zerorev.maps.planes import AXES, Across, view_flips
 from zerorev.model._arrays import Array
+from zerorev.model.quantity import Quantity
 from zerorev.report.figures import style
 from zerorev.report.figures.cell import named_direction
 from zerorev.report.figures.page import embedded, html_page

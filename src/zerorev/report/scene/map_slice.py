@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from zerorev.errors import InputError
 from zerorev.files.units import m, mm
-from zerorev.maps.answers import Quantity, cells_of
+from zerorev.maps.answers import cells_of
 from zerorev.maps.cells import STATUS
 from zerorev.maps.planes import AXES, Across
 from zerorev.maps.replan import hole_of
@@ -25,6 +25,7 @@ from zerorev.maps.workspace import MapStore, read_workspace_map
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import MapTask, Question
+from zerorev.model.quantity import Quantity
 from zerorev.report.words.map_run import WORDS
 
 if TYPE_CHECKING:

@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
-from zerorev.maps.answers import QUANTITIES, Difference, Field, difference, mirror_in_y
+from zerorev.maps.answers import Difference, Field, difference, mirror_in_y
 from zerorev.maps.planes import planes_of
 from zerorev.model._arrays import Array
+from zerorev.model.quantity import quantity
 from zerorev.motion.kinematics import joint_rates
 from zerorev.report.figures.cell import robot_in_cell
 from zerorev.report.figures.map_difference import map_difference
@@ -35,7 +36,7 @@ from zerorev.thesis.swarm import TABLE_4, run_swarm
 
 __all__ = ["make", "printed"]
 
-DEEPEST_MM = QUANTITIES[0]
+DEEPEST_MM = quantity("deepest")
 ALONG_X = np.array([[1.0, 0.0, 0.0]])
 PLANES_MM = (-100.0, 0.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0)  # Figures 21 to 24
 ODD_MM = 100.0  # sec. 4.6: the plane that is "exceedingly discontinuous and sparse"

@@ -15,7 +15,8 @@ from zerorev.errors import InputError, ZerorevError
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.planes import AXES
 from zerorev.maps.run import local
-from zerorev.model.map_task import NEED_DEPTH, MapTask, Question
+from zerorev.model.map_task import MapTask, Question
+from zerorev.model.quantity import quantities
 from zerorev.report.scene.map_slice import MapSlice, computed, plane_task, slice_of
 from zerorev.report.words.workspace_map import heading
 from zerorev.web.computing import Work
@@ -25,13 +26,6 @@ from zerorev.web.views.notices import failed
 
 __all__ = ["map_panel"]
 
-QUANTITIES = {
-    "deepest": "deepest stroke with zero reversals",
-    "fewest_reversals": "fewest reversals, as deep as the hole",
-    "least_travel": "least travel, as deep as the hole",
-    "greatest_margin": "greatest margin, as deep as the hole",
-    "twist_spread": "twist spread",
-}
 CUTS = {"drill": "across the drill", "x": "across X", "y": "across Y", "z": "across Z"}
 EMPTY = (
     "A map asks the same of many places in a plane through the hole; the answers are shown as coloured cells around "
@@ -86,7 +80,7 @@ class _Form:
 
 def _ask(session: Session, work: Work) -> None:
     with ui.element("div").classes("zr-map-ask"):
-        quantity = ui.select(QUANTITIES, value="deepest", label="Ask each cell for").props(_look("map-quantity"))
+        quantity = ui.select(_offered(), value="deepest", label="Ask each cell for").props(_look("map-quantity"))
         cut = ui.select(CUTS, value="drill", label="Plane through the hole").props(_look("map-cut"))
         lengths = {
             name: ui.number(f"{name.capitalize()} [mm]", value=value, format="%g").props(_look(f"map-{name}"))
@@ -148,7 +142,7 @@ def _task(state: State, form: _Form) -> MapTask:
     quantity = form.quantity.value
     question = Question(
         job.robot, job.tool, quantity, job.settings, tuple(hole.psi_zero.tolist()),
-        hole.depth if quantity in NEED_DEPTH else None,
+        hole.depth if quantities()[quantity].needs_depth else None,
     )  # fmt: skip
     return plane_task(question, hole.target, hole.direction, form.cut.value, (width, height), spacing)
 
@@ -232,3 +226,9 @@ def _pick(session: Session, cell: Any) -> None:
     except ZerorevError as error:
         words = f"{error.what}: no hole is made of it" if isinstance(error, InputError) else str(error)
         failed(words)
+
+
+def _offered() -> dict[str, str]:
+    """The quantities that a plane can be asked for, in words."""
+    offered = [each for each in quantities().values() if each.offered]
+    return {each.name: each.title + (", as deep as the hole" if each.needs_depth else "") for each in offered}
