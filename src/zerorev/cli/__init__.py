@@ -14,18 +14,23 @@ from cyclopts import CycloptsError
 
 # a file that defines commands joins them to the app when it is imported; the order is that of --help
 from zerorev.cli import (  # noqa: F401
-    advice,
-    comparing,
-    map_run,
+    check,
+    compare,
+    depth,
+    export,
+    map,
+    map_compare,
     map_show,
-    mapping,
-    placing,
-    planning,
-    programs,
-    replaying,
+    offset,
+    parameter_map,
+    place,
+    plan,
+    rates,
+    replay,
     reproduce,
     robots,
-    viewing,
+    share,
+    view,
 )
 from zerorev.cli.common import BAD_INPUT, BUG, FINE, FOUND, INTERRUPTED, PIPE_CLOSED, app
 from zerorev.errors import NotExportableError, ZerorevError

@@ -24,6 +24,7 @@ __all__ = [
     "check_outputs",
     "map_app",
     "need",
+    "need_maps",
     "numbers",
 ]  # fmt: skip
 
@@ -119,3 +120,9 @@ def need(module: str, package: str, option: str, extra: str) -> None:
         raise InputError(
             f"needs {package}, which is not installed", where=option, accepted=f"pip install 'zerorev[{extra}]'"
         )
+
+
+def need_maps(command: str) -> None:
+    """Refuse a command that reads maps, where the packages for that are not installed."""
+    for package in ("xarray", "zarr"):
+        need(package, package, command, "maps")

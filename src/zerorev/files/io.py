@@ -31,6 +31,7 @@ __all__ = [
     "job_from_dict",
     "job_from_text",
     "plan_from_text",
+    "plan_text",
     "plan_to_json",
     "read_job",
     "read_plan",
@@ -137,7 +138,16 @@ def read_plan(path: str | Path) -> Plan:
     Raises:
         InputError: another kind of file, cut short, altered, or with values that cannot be used.
     """
-    return plan_from_text(read_text(Path(path), "a plan file (JSON)"), str(path))
+    return plan_from_text(plan_text(path), str(path))
+
+
+def plan_text(path: str | Path) -> str:
+    """The text of a plan file or a depth file.
+
+    Raises:
+        InputError: as `read_text` has it.
+    """
+    return read_text(Path(path), "a plan file (JSON)")
 
 
 def plan_from_text(text: str, file: str) -> Plan:

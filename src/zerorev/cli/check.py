@@ -1,4 +1,4 @@
-"""`zerorev check` and `zerorev export`: from a plan, by way of its proof, to a robot program."""
+"""`zerorev check`: a plan once more, from what its file states alone."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, need
+from zerorev.cli.common import FINE, FOUND, Whole, app, need
 from zerorev.cli.proofs import Proofs
 from zerorev.cli.tolerances import Tolerances
 from zerorev.errors import InputError
@@ -15,9 +15,7 @@ from zerorev.report.words import terminal
 if TYPE_CHECKING:
     from zerorev.model.plan import Plan
 
-__all__ = ["check", "export"]
-
-PLAN_FILE = "a plan file (JSON)"
+__all__ = ["check"]
 
 
 @app.command
@@ -60,9 +58,8 @@ def check(
             of each hole of the program; with --proof, `proofs` besides.
     """
     from zerorev.files.checked_files import remember
-    from zerorev.files.io import plan_from_text, plan_to_json, write_plan
+    from zerorev.files.io import plan_from_text, plan_text, plan_to_json, write_plan
     from zerorev.files.output import check_file
-    from zerorev.files.text import read_text
 
     if program is not None and not certify:
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
@@ -74,7 +71,7 @@ def check(
         need("flint", "python-flint", "--certify" if certify else "--proof", "certify")
     if certify and program is None:
         check_file(plan)
-    text = read_text(plan, PLAN_FILE)
+    text = plan_text(plan)
     stated = plan_from_text(text, str(plan))
     if program is not None:
         from zerorev.program.krl.read import read_program
@@ -99,7 +96,7 @@ def check(
         with terminal.busy("proving"):
             checked = replace(checked, plan=asked.certified(checked.plan))
         write_plan(checked.marked(rewritten=True), plan)
-        remember(read_text(plan, PLAN_FILE))
+        remember(plan_text(plan))
     answer = checked.marked() if certify else without_proofs(checked.marked())
     found = proofs.checked(checked.plan)
     if json and program is not None:
@@ -114,47 +111,6 @@ def check(
             terminal.say(f"check and certificates written into {plan}")
         proofs.show(found)
     return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
-
-
-@app.command
-def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
-    """Write a plan as a robot program, after a last look at its speeds, turns and poses.
-
-    A plan file that plan or check has checked on this machine is not checked again, as long as it is unchanged.
-
-    Args:
-        plan: The plan file (JSON).
-        controller: The robot's controller: krl (KUKA).
-        output: The program's file; by default beside the plan, called as the plan is.
-        skip_failed: Leave out the holes that must not be exported instead of refusing them all.
-    """
-    from zerorev.files.checked_files import is_checked
-    from zerorev.files.io import plan_from_text
-    from zerorev.files.output import write_text
-    from zerorev.files.text import read_text
-
-    check_outputs((output,), plan)
-    text = read_text(plan, PLAN_FILE)
-    answer = plan_from_text(text, str(plan))
-    if is_checked(text):
-        from zerorev.verify.check import known_as_checked
-
-        answer = known_as_checked(answer)
-
-    from zerorev.planning.job import workers_for
-    from zerorev.program.export import export as to_program
-    from zerorev.report.words import tables
-
-    name, workers = output.stem if output else None, workers_for(len(answer.holes), None)
-    with terminal.progress("checking", len(answer.holes)) as progress:
-        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=workers, progress=progress)
-    target = output or plan.with_name(program.name + program.suffix)
-    terminal.print_lines(tables.finding_lines(program.findings))
-    write_text(target, program.text)
-    terminal.say(f"program {program.name} written to {target}")
-    if target.name != program.name + program.suffix:
-        terminal.note(f"the controller wants this file called {program.name}{program.suffix}")
-    return FINE
 
 
 def _passed(plan: Plan) -> set[str]:

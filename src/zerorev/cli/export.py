@@ -1,0 +1,50 @@
+"""`zerorev export`: a plan as a robot program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from zerorev.cli.common import FINE, Output, app, check_outputs
+from zerorev.report.words import terminal
+
+__all__ = ["export"]
+
+
+@app.command
+def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
+    """Write a plan as a robot program, after a last look at its speeds, turns and poses.
+
+    A plan file that plan or check has checked on this machine is not checked again, as long as it is unchanged.
+
+    Args:
+        plan: The plan file (JSON).
+        controller: The robot's controller: krl (KUKA).
+        output: The program's file; by default beside the plan, called as the plan is.
+        skip_failed: Leave out the holes that must not be exported instead of refusing them all.
+    """
+    from zerorev.files.checked_files import is_checked
+    from zerorev.files.io import plan_from_text, plan_text
+    from zerorev.files.output import write_text
+
+    check_outputs((output,), plan)
+    text = plan_text(plan)
+    answer = plan_from_text(text, str(plan))
+    if is_checked(text):
+        from zerorev.verify.check import known_as_checked
+
+        answer = known_as_checked(answer)
+
+    from zerorev.planning.job import workers_for
+    from zerorev.program.export import export as to_program
+    from zerorev.report.words import tables
+
+    name, workers = output.stem if output else None, workers_for(len(answer.holes), None)
+    with terminal.progress("checking", len(answer.holes)) as progress:
+        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=workers, progress=progress)
+    target = output or plan.with_name(program.name + program.suffix)
+    terminal.print_lines(tables.finding_lines(program.findings))
+    write_text(target, program.text)
+    terminal.say(f"program {program.name} written to {target}")
+    if target.name != program.name + program.suffix:
+        terminal.note(f"the controller wants this file called {program.name}{program.suffix}")
+    return FINE

@@ -1,0 +1,47 @@
+"""`zerorev plan`: the motion of each hole."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
+
+__all__ = ["plan"]
+
+
+@app.command
+def plan(
+    job: Path,
+    /,
+    *,
+    output: Output = None,
+    figures: Path | None = None,
+    proof_boxes: int | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
+    """Find the drilling motion of each hole of a job, and check it.
+
+    With -o the finished holes are kept in PLAN.json.part on the way; after an interruption the same command goes on
+    from there.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        output: Where to write the plan (JSON). Without it the answer is only shown.
+        figures: Folder for three pictures a hole; it is made if its parent exists.
+        proof_boxes: How many boxes of legs each hole's proof may examine, instead of the job's; 0: no proof.
+        workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
+        json: Print the plan as JSON on standard output, and nothing else there.
+    """
+    from zerorev.files.io import read_job
+    from zerorev.files.output import check_folder
+
+    check_outputs((output,), job)
+    if figures is not None:
+        need("matplotlib", "matplotlib", "--figures", "figures")
+        check_folder(figures)
+    wanted = read_job(job, options={} if proof_boxes is None else {"proof_boxes": proof_boxes})
+
+    from zerorev.cli.answering import run
+
+    return FINE if run(wanted, "asked", output, workers, json=json, figures=figures) else FOUND

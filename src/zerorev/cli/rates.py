@@ -1,0 +1,46 @@
+"""`zerorev rates`: what is predicted before any search."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+from zerorev.cli.common import FINE, app
+from zerorev.report.words import terminal
+
+__all__ = ["rates"]
+
+
+@app.command
+def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> int:
+    """Show the critical twist rates of each hole and what they foretell, before any search.
+
+    Args:
+        job: The job file (YAML): robot, tool, holes.
+        psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
+        json: Print JSON on standard output, and nothing else there.
+    """
+    from zerorev.files.io import read_job
+
+    wanted = read_job(job)
+
+    from zerorev.motion.critical import critical_at
+    from zerorev.report.words import rates as shown
+    from zerorev.search.prediction import predict
+
+    if psi_deg is not None:
+        at, psi = partial(critical_at, wanted.robot, wanted.tool), math.radians(psi_deg)
+        found = [(hole, each) for hole in wanted.holes for each in at(hole, psi)]
+        if json:
+            terminal.print_json([{"id": hole.id} | shown.rates_data(each) for hole, each in found])
+        else:
+            terminal.out().print(shown.rates_table(wanted, found))
+        return FINE
+    foretold = [predict(wanted.robot, wanted.tool, hole, wanted.settings) for hole in wanted.holes]
+    if json:
+        pairs = zip(wanted.holes, foretold, strict=True)
+        terminal.print_json([shown.foretold_data(hole, each) for hole, each in pairs])
+    else:
+        terminal.out().print(shown.foretold_table(wanted, foretold))
+    return FINE
