@@ -5,7 +5,7 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test long soak bench lint schemas clean
+.PHONY: demo test long soak bench lint docs schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
 	mkdir -p $(OUT)
@@ -36,6 +36,10 @@ lint: $(READY)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(READY)  ## the documentation site, in out/site; a broken link, a missing anchor or a page outside the menu fails
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+	@echo "out/site/index.html"
 
 bench: $(VENV)/.bench  ## zerorev and its peers at the same work; a part or less of it: make bench BENCH="field --quick"
 	$(BIN)/python -m benchmarks.run $(BENCH)

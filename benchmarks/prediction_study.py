@@ -2,7 +2,7 @@
 
 Random holes are foretold and then solved exactly: the deepest stroke by `zerorev.deepest_stroke`, and the least twist
 |psi_start - psi_end| of a motion without a reversal by an own scan over all spins and slopes. The motion threshold is
-off. Writes docs/img/prediction.png and out/prediction.json, and prints the tables of docs/prediction.md.
+off. Writes docs/img/prediction.png and out/prediction.json, and prints the tables of docs/explanation/prediction.md.
 """
 
 from __future__ import annotations
@@ -183,7 +183,7 @@ def tables(found: list[dict[str, Any]]) -> dict[str, dict[str, dict[str, float]]
 
 
 def markdown(judgements: dict[str, dict[str, dict[str, float]]]) -> Iterator[str]:
-    """The tables as docs/prediction.md shows them."""
+    """The tables as docs/explanation/prediction.md shows them."""
     for what, ways in judgements.items():
         yield f"| {what} | " + " | ".join(next(iter(ways.values()))) + " |"
         yield "|---" * (1 + len(next(iter(ways.values())))) + "|"

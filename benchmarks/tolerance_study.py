@@ -2,7 +2,7 @@
 
 Random holes are planned for the least travel, with the motion threshold and without, and for the greatest margin; of
 each motion without a reversal, the largest certified tolerance of the part's placement is found. Writes
-docs/img/tolerance.png and out/tolerance.json, and prints the tables of docs/theory.md.
+docs/img/tolerance.png and out/tolerance.json, and prints the tables of docs/explanation/check.md.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def correlation(margin: Array, within: Array) -> float:
 
 
 def markdown(found: list[dict[str, Any]]) -> Iterator[str]:
-    """The table as docs/theory.md shows it."""
+    """The table as docs/explanation/check.md shows it."""
     columns = {name: judged(found, name) for name in WAYS}
     yield "| | " + " | ".join(WAYS) + " |"
     yield "|---" * (1 + len(WAYS)) + "|"

@@ -1,4 +1,4 @@
-"""A robot and a tool of one's own, in Python; the same numbers go into two small YAML files (docs/files.md)."""
+"""Your own robot and tool, in Python; the same numbers go into two small YAML files (docs/reference/files.md)."""
 
 import numpy as np
 

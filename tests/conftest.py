@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import signal
 
 import pytest
@@ -12,6 +14,12 @@ from zerorev.files.io import read_robot, read_tool, robot_names
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # started in the background: what tests start would inherit it
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+FLAGS = (
+    "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+)  # fmt: skip
+WITHIN = 20_000  # [ms] an expectation waits
 
 settings.register_profile("deterministic", derandomize=True, deadline=None, database=None, max_examples=50)
 settings.load_profile("deterministic")
@@ -69,3 +77,25 @@ def position(request) -> Position:
 def any_robot(request):
     """Each robot that ships."""
     return read_robot(request.param)
+
+
+@pytest.fixture(scope="session")
+def chromium_path() -> str:
+    """Where chromium is; a machine without it skips these tests, but CI does not."""
+    found = shutil.which("chromium") or shutil.which("chromium-browser")
+    if found is None:
+        message = "no chromium is installed (Debian: apt-get install chromium), so no page is tested in a browser"
+        pytest.fail(message) if os.environ.get("CI") else pytest.skip(message)
+    return found
+
+
+@pytest.fixture(scope="module")
+def browser(chromium_path):
+    """A browser without a window, of one test file: while it is there, no other event loop may run in the process."""
+    from playwright.sync_api import expect, sync_playwright
+
+    expect.set_options(timeout=WITHIN)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium_path, args=list(FLAGS))
+        yield browser
+        browser.close()

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -22,35 +21,8 @@ import pytest
 
 from zerorev.cli.common import INTERRUPTED
 
-FLAGS = (
-    "--no-sandbox", "--enable-unsafe-swiftshader", "--disable-gpu-compositing", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-)  # fmt: skip
 PATIENCE = 60.0  # [s] for a server to start or end; a machine may be busy
 OWN = ("data:", "blob:", "about:")  # addresses that never leave the browser
-WITHIN = 20_000  # [ms] an expectation waits
-
-
-@pytest.fixture(scope="session")
-def chromium_path() -> str:
-    """Where chromium is; a machine without it skips these tests, but CI does not."""
-    found = shutil.which("chromium") or shutil.which("chromium-browser")
-    if found is None:
-        message = "no chromium is installed (Debian: apt-get install chromium), so the app is not tested in a browser"
-        pytest.fail(message) if os.environ.get("CI") else pytest.skip(message)
-    return found
-
-
-@pytest.fixture(scope="module")
-def browser(chromium_path):
-    """A browser without a window, of one test file: while it is there, no other event loop may run in the process."""
-    from playwright.sync_api import expect, sync_playwright
-
-    expect.set_options(timeout=WITHIN)
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium_path, args=list(FLAGS))
-        yield browser
-        browser.close()
 
 
 class Server:
@@ -160,7 +132,6 @@ def open_page(browser):
         )
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(WITHIN)
         page.expected = []
 
         def fault(what: str) -> None:
