@@ -5,7 +5,7 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
-.PHONY: demo test long soak bench lint docs schemas clean
+.PHONY: demo test long soak bench lint docs reference schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
 	mkdir -p $(OUT)
@@ -40,6 +40,9 @@ lint: $(READY)
 docs: $(READY)  ## the documentation site, in out/site; a broken link, a missing anchor or a page outside the menu fails
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 	@echo "out/site/index.html"
+
+reference: $(READY)  ## rewrite the page of commands from their help texts
+	$(BIN)/python tools/commands_page.py
 
 bench: $(VENV)/.bench  ## zerorev and its peers at the same work; a part or less of it: make bench BENCH="field --quick"
 	$(BIN)/python -m benchmarks.run $(BENCH)
