@@ -1,4 +1,4 @@
-"""How-to pages: their commands write what is shown, their Python runs and prints what its comments say."""
+"""README and how-to pages: their commands write what is shown, their Python runs and prints what its comments say."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ import pytest
 from oracles import shown
 
 ROOT = Path(__file__).parents[2]
-PAGES = {page.stem: page for page in sorted((ROOT / "docs/howto").glob("*.md"))}
+PAGES = {page.stem: page for page in (ROOT / "README.md", *sorted((ROOT / "docs/howto").glob("*.md")))}
 FAILING = {"findings": 2}  # exit code of the one command that is shown because it fails
 
 
 def _with_files(page: Path, folder: Path) -> None:
-    for after, text in shown.blocks(page, "yaml"):
-        if name := re.search(r'title="([\w.]+)"', after):
-            (folder / name[1]).write_text(text, encoding="utf-8")
+    for language in ("yaml", "csv"):
+        for after, text in shown.blocks(page, language):
+            if name := re.search(r'title="([\w.]+)"', after):
+                (folder / name[1]).write_text(text, encoding="utf-8")
 
 
 @pytest.mark.long
@@ -33,7 +34,7 @@ def test_every_command_writes_what_the_page_shows(tmp_path, name):
 
 
 def test_pages_with_commands_are_tested():
-    assert {"not_zero", "findings"} <= {name for name, page in PAGES.items() if shown.commands(page)}
+    assert {"README", "not_zero", "findings"} <= {name for name, page in PAGES.items() if shown.commands(page)}
 
 
 @pytest.mark.parametrize("name", ["own_robot", "own_tool"])

@@ -82,6 +82,18 @@ def test_every_page_is_built_from_the_menu(site):
     assert all((site / path).is_file() for path in sources)
 
 
+def test_links_of_files_beside_the_documentation_lead_somewhere():
+    """Of the README and its like, which are read where the code lies."""
+    links = {
+        (page, link.partition("#")[0])
+        for page in [*ROOT.glob("*.md"), ROOT / "benchmarks/README.md"]
+        for link in re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
+        if not urlsplit(link).scheme
+    }
+    assert len(links) > 10
+    assert [link for page, link in links if not (page.parent / link).exists()] == []
+
+
 def test_sections_that_the_code_cites_exist():
     pages = [*(ROOT / "docs/explanation").glob("*.md"), ROOT / "docs/thesis/index.md"]
     sections = {
