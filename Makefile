@@ -41,8 +41,9 @@ docs: $(READY)  ## the documentation site, in out/site; a broken link, a missing
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 	@echo "out/site/index.html"
 
-reference: $(READY)  ## rewrite the page of commands from their help texts
+reference: $(READY)  ## rewrite the page of commands from their help texts, and the tables of settings and criteria
 	$(BIN)/python tools/commands_page.py
+	$(BIN)/python tools/tables.py
 
 bench: $(VENV)/.bench  ## zerorev and its peers at the same work; a part or less of it: make bench BENCH="field --quick"
 	$(BIN)/python -m benchmarks.run $(BENCH)

@@ -7,7 +7,7 @@ import shlex
 from pathlib import Path
 
 import pytest
-from tools import commands_page
+from tools import commands_page, tables
 
 import zerorev
 
@@ -17,6 +17,14 @@ PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), ROOT / "benc
 
 def test_the_page_of_commands_is_up_to_date():
     assert commands_page.PAGE.read_text(encoding="utf-8") == commands_page.text(), "run `make reference`"
+
+
+def test_the_tables_of_settings_and_criteria_are_up_to_date():
+    found = list(tables.pages())
+    assert [page.name for page, text, made in found if text != made] == [], "run `make reference`"
+    text = "".join(text for _, text, _ in found)
+    assert "| `min_rate_deg_per_mm` | 0.01 |" in text
+    assert "| `compliance_axial` |" in text
 
 
 def test_every_public_name_is_documented(site):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
+from zerorev.cli.instead import Instead, given
 
 __all__ = ["plan"]
 
@@ -16,9 +17,9 @@ def plan(
     *,
     output: Output = None,
     figures: Path | None = None,
-    proof_boxes: int | None = None,
     workers: int | None = None,
     json: bool = False,
+    instead: Instead = None,
 ) -> int:
     """Find the drilling motion of each hole of a job, and check it.
 
@@ -29,9 +30,9 @@ def plan(
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
-        proof_boxes: How many boxes of legs each hole's proof may examine, instead of the job's; 0: no proof.
         workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
         json: Print the plan as JSON on standard output, and nothing else there.
+        instead: Of the job's settings.
     """
     from zerorev.files.io import read_job
     from zerorev.files.output import check_folder
@@ -40,7 +41,7 @@ def plan(
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
-    wanted = read_job(job, options={} if proof_boxes is None else {"proof_boxes": proof_boxes})
+    wanted = read_job(job, options=given(instead))
 
     from zerorev.cli.answering import run
 

@@ -12,14 +12,15 @@ from typing import Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm, WeightsForm
-from zerorev.files.units import deg, deg_per_mm, m, mm, plain, rad, rad_per_m
+from zerorev.files.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm
+from zerorev.files.stated_forms import data_of, noun_from
+from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
 from zerorev.model.hole import Hole, psi_zero_vector
-from zerorev.model.job import Settings, Weights
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
+from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 
 __all__ = [
@@ -95,61 +96,19 @@ def frame_data(T_base_part: Array) -> dict[str, Any]:
     return dict(plain({"xyz_mm": mm(T_base_part[:3, 3]), "rpy_deg": deg(rpy_of(T_base_part[:3, :3]))}))
 
 
-def settings_from(form: SettingsForm) -> Settings:
-    """The settings of a job or of a plan."""
-    return Settings(
-        min_rate=float(rad_per_m(form.min_rate_deg_per_mm)),
-        min_rate_rule=form.min_rate_rule,
-        psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),
-        legs=form.legs,
-        max_twist=float(rad_per_m(form.max_twist_deg_per_mm)),
-        objective=form.objective if isinstance(form.objective, str) else "travel",
-        weights=() if isinstance(form.objective, str) else _weights(form.objective),
-        joint_stiffness=None if form.joint_stiffness_nm_per_rad is None else tuple(form.joint_stiffness_nm_per_rad),
-        reversal_weights=tuple(form.reversal_weights),
-        near_joints=None if form.near_joints_deg is None else tuple(rad(form.near_joints_deg).tolist()),
-        blend=float(m(form.blend_mm)),
-        blend_shortfall=None if form.blend_shortfall_mm is None else float(m(form.blend_shortfall_mm)),
-        deepen_corner=form.deepen_corner,
-        lead_in=float(m(form.lead_in_mm)),
-        keep_lead_in=form.keep_lead_in,
-        feed_plunge=float(m(form.feed_mm_s.plunge)),
-        feed_retract=float(m(form.feed_mm_s.retract)),
-        spindle_rpm=form.spindle_rpm,
-        proof_boxes=Settings.proof_boxes if form.proof_boxes is None else form.proof_boxes,
-    )
+def settings_from(form: SettingsForm, *, before: bool = False) -> Settings:
+    """The settings of a job or of a file of answers.
 
-
-def _weights(form: WeightsForm) -> Weights:
-    """The criteria that weigh anything."""
-    weights = tuple((name, weight) for name, weight in form.model_dump().items() if weight > 0)
-    if not weights:
-        raise InputError("no criterion weighs anything", where="objective", accepted="one weight or more above 0")
-    return weights
+    Args:
+        form: as it was read.
+        before: whether a missing key means what it meant before it existed, as in a file of answers.
+    """
+    return noun_from(Settings, form, before=before)
 
 
 def settings_data(settings: Settings) -> dict[str, Any]:
-    """The settings as a plan file holds them."""
-    data = {
-        "min_rate_deg_per_mm": deg_per_mm(settings.min_rate),
-        "min_rate_rule": settings.min_rate_rule,
-        "psi_bound_deg": None if settings.psi_bound is None else deg(settings.psi_bound),
-        "legs": settings.legs,
-        "max_twist_deg_per_mm": deg_per_mm(settings.max_twist),
-        "objective": dict(settings.weights) or settings.objective,
-        "joint_stiffness_nm_per_rad": settings.joint_stiffness,
-        "reversal_weights": settings.reversal_weights,
-        "near_joints_deg": None if settings.near_joints is None else deg(settings.near_joints),
-        "blend_mm": mm(settings.blend),
-        "blend_shortfall_mm": None if settings.blend_shortfall is None else mm(settings.blend_shortfall),
-        "deepen_corner": settings.deepen_corner,
-        "lead_in_mm": mm(settings.lead_in),
-        "keep_lead_in": settings.keep_lead_in,
-        "feed_mm_s": {"plunge": mm(settings.feed_plunge), "retract": mm(settings.feed_retract)},
-        "spindle_rpm": settings.spindle_rpm,
-        "proof_boxes": settings.proof_boxes,
-    }
-    return dict(plain(data))
+    """The settings as a file of answers holds them."""
+    return data_of(settings)
 
 
 def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_part: Array) -> Hole:

@@ -106,7 +106,10 @@ def read_job(path: str | Path, *, depth_needed: bool = True, options: Mapping[st
     document = yaml_document(read_text(path, "a job file (YAML)"), str(path))
     if options and isinstance(document.data, dict):
         checked(SettingsForm, Document("options", dict(options)))
-        document.data.update(options)
+        for key, value in options.items():
+            there = document.data.get(key)
+            nested = isinstance(value, Mapping) and isinstance(there, Mapping)
+            document.data[key] = dict(there or {}) | dict(value) if nested else value
     return _job(document, path.parent, path.stem, depth_needed=depth_needed)
 
 

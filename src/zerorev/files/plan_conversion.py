@@ -18,11 +18,10 @@ from zerorev.files.conversion import (
     tool_data,
     tool_from,
 )
-from zerorev.files.plan_data import MOTION, RPM, SCORE, twist_spread
+from zerorev.files.plan_data import MOTION, SCORE, twist_spread
 from zerorev.files.plan_schema import (
     BaselineForm,
     CertificateForm,
-    CriteriaForm,
     DepthFile,
     DepthHole,
     FindingForm,
@@ -34,17 +33,18 @@ from zerorev.files.plan_schema import (
     VerifiedForm,
     WithinForm,
 )
+from zerorev.files.stated_forms import noun_from
 from zerorev.files.units import m, rad, rad_per_m
 from zerorev.files.validation import inside
 from zerorev.model._arrays import UNIT_TOLERANCE, Array
 from zerorev.model.hole import Hole
+from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
     Event,
     Finding,
     HolePlan,
-    Measures,
     Motion,
     Optimality,
     Plan,
@@ -70,9 +70,7 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
         tool = tool_from(form.tool)
         _same_numbers(form.tool.sha256, tool_data(tool)["sha256"])
     with inside("settings"):
-        settings = settings_from(form.settings)
-        if form.settings.proof_boxes is None:
-            settings = settings.without_proof
+        settings = settings_from(form.settings, before=True)
     holes: Sequence[PlanHole | DepthHole] = form.holes
     ids = [hole.id for hole in holes]
     if len(set(ids)) < len(ids):
@@ -138,7 +136,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             findings=_findings_from(form.findings),
             certificate=_certificate_from(form.certificate) if form.certificate else None,
             certified_within=_within_from(form.certified_within) if form.certified_within else None,
-            measures=_measures_from(form.criteria) if form.criteria else None,
+            measures=noun_from(Measures, form.criteria) if form.criteria else None,
             deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
             deepest_at_most=None if form.deepest_at_most_mm is None else float(m(form.deepest_at_most_mm)),
             optimality=_optimality_from(form.optimality) if form.optimality else None,
@@ -242,20 +240,6 @@ def _certificate_from(form: CertificateForm) -> Certificate:
 
 def _within_from(form: WithinForm) -> Within:
     return Within(float(m(form.mm)), float(rad(form.deg)))
-
-
-def _measures_from(form: CriteriaForm) -> Measures[float]:
-    number = {name: float(_measured(value)) for name, value in form.model_dump().items()}
-    return Measures(
-        travel=float(rad(number["travel_deg"])),
-        margin=float(rad_per_m(number["margin_deg_per_mm"])),
-        plunge_rotation=float(rad(number["plunge_rotation_deg"])),
-        tool_speed_change=number["tool_speed_change_rpm"] / RPM,
-        limit_distance=number["limit_distance"],
-        compliance_axial=number["compliance_axial_um_per_n"] / 1e6,
-        compliance_lateral=number["compliance_lateral_um_per_n"] / 1e6,
-        manipulability=number["manipulability"],
-    )
 
 
 def _findings_from(forms: list[FindingForm]) -> tuple[Finding, ...]:

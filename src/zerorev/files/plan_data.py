@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
+from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -16,7 +15,6 @@ from zerorev.model.plan import (
     Baseline,
     Certificate,
     HolePlan,
-    Measures,
     Motion,
     Optimality,
     Plan,
@@ -26,12 +24,10 @@ from zerorev.model.plan import (
     Within,
 )
 
-__all__ = ["FORMS", "MOTION", "RPM", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
+__all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
 
 FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "deepest": DepthFile}
 """What file a plan becomes, by its strokes."""
-
-RPM = 30 / np.pi  # [rev/min] of 1 rad/s
 
 MOTION = ("branch", "standoff_mm", "psi_deg", "joints_deg")
 SCORE = (
@@ -98,7 +94,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "verified": _verified_data(answer.verified),
         "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
         "certified_within": _within_data(answer.certified_within) if answer.certified_within else None,
-        "criteria": _criteria_data(answer.measures) if answer.measures else None,
+        "criteria": data_of(answer.measures) if answer.measures else None,
         "findings": [vars(finding) for finding in answer.findings],
     }
 
@@ -202,16 +198,3 @@ def _certificate_data(certificate: Certificate) -> dict[str, Any]:
 
 def _within_data(within: Within) -> dict[str, Any]:
     return {"mm": mm(within.position), "deg": deg(within.rotation)}
-
-
-def _criteria_data(measures: Measures[float]) -> dict[str, Any]:
-    return {
-        "travel_deg": deg(measures.travel),
-        "margin_deg_per_mm": deg_per_mm(measures.margin),
-        "plunge_rotation_deg": deg(measures.plunge_rotation),
-        "tool_speed_change_rpm": measures.tool_speed_change * RPM,
-        "limit_distance": measures.limit_distance,
-        "compliance_axial_um_per_n": measures.compliance_axial * 1e6,
-        "compliance_lateral_um_per_n": measures.compliance_lateral * 1e6,
-        "manipulability": measures.manipulability,
-    }

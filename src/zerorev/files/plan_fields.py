@@ -7,6 +7,9 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+from zerorev.model.measures import CRITERIA, Criterion
+from zerorev.model.units import DEG_PER_MM
+
 __all__ = ["HEAD_FIELDS", "HOLE_FIELDS", "Field", "field_of"]
 
 How = Literal["input", "motion", "figure", "search", "finding", "check", "not recomputed"]
@@ -48,6 +51,12 @@ _ANGLE = Field("figure", DIGITS, 1e-8)  # [deg]
 _RATE = Field("figure", DIGITS, 1e-13)  # [deg/mm]
 _SLOWEST = _RATE._replace(relative=DIP, nil=AT_REST)
 _EXACT = Field("figure")
+
+
+def _criterion(criterion: Criterion) -> Field:
+    # of a least rate, what the least rates of the joints are
+    return _SLOWEST if criterion.unit is DEG_PER_MM else Field("figure", DIGITS, criterion.absolute, criterion.added)
+
 
 HEAD_FIELDS: dict[str, Field] = {
     "format": Field("input"),
@@ -112,14 +121,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "certificate": Field("not recomputed"),
     "certified_within": Field("not recomputed"),
     "criteria": Field("figure", optional=True),
-    "criteria.travel_deg": _ANGLE,
-    "criteria.margin_deg_per_mm": _SLOWEST,
-    "criteria.plunge_rotation_deg": _ANGLE,
-    "criteria.tool_speed_change_rpm": Field("figure", DIGITS, 1e-11),
-    "criteria.limit_distance": Field("figure", DIGITS, 1e-10),
-    "criteria.compliance_axial_um_per_n": Field("figure", DIGITS, 1e-12),
-    "criteria.compliance_lateral_um_per_n": Field("figure", DIGITS, 1e-12),
-    "criteria.manipulability": Field("figure", DIGITS, 1e-12),
+    **{f"criteria.{each.path[-1]}": _criterion(each) for each in CRITERIA.values()},
     "findings": Field("finding"),
 }
 """Likewise of a hole, by the path within it; that of a depth file has its own below `plan`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -26,6 +26,8 @@ from zerorev.files.schema import (
     Text,
     ToolForm,
 )
+from zerorev.files.stated_forms import form_of
+from zerorev.model.measures import Measures
 
 __all__ = [
     "BaselineForm",
@@ -70,28 +72,16 @@ class FindingForm(Form):
     hole: Text | None = Field(description="text: the hole's id; or null: the whole plan is meant")
 
 
-class CriteriaForm(Form):
-    """What the criteria measure of a motion beside its reversals; null where it is undefined."""
+if TYPE_CHECKING:
 
-    travel_deg: Measured | None = Field(description="a number [deg]: sum over the joints of the angle moved")
-    margin_deg_per_mm: Measured | None = Field(
-        description="a number [deg/mm]: slowest motion of a joint that does not reverse, by min_rate_rule"
-    )
-    plunge_rotation_deg: Measured | None = Field(description="a number [deg]: spin of the tool during the plunge")
-    tool_speed_change_rpm: Measured | None = Field(
-        description="a number [rev/min]: greatest change of the drill's speed by the spin during the plunge"
-    )
-    limit_distance: Measured | None = Field(
-        description="a number: least distance of a joint to a limit, 0 at it, 1 in the middle of its range"
-    )
-    compliance_axial_um_per_n: Measured | None = Field(
-        description="a number [um/N]: greatest give of the tip along the drill axis; null: no joint stiffness is given"
-    )
-    compliance_lateral_um_per_n: Measured | None = Field(
-        description="a number [um/N]: greatest give of the tip across the drill axis; null: no joint stiffness is given"
-    )
-    manipulability: Measured | None = Field(
-        description="a number: least manipulability, 0 where the arm is singular, always below 1"
+    class CriteriaForm(Form):
+        """What the criteria measure of a motion beside its reversals; null where it is undefined."""
+
+else:
+    CriteriaForm = form_of(
+        Measures,
+        "CriteriaForm",
+        "What the criteria measure of a motion beside its reversals; null where it is undefined.",
     )
 
 

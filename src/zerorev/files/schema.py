@@ -6,10 +6,12 @@ Schemas (docs/schemas) both show it.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
+from zerorev.files.stated_forms import Form, form_of, kind
+from zerorev.model.settings import Settings
 from zerorev.visible import one_line
 
 __all__ = [
@@ -50,12 +52,6 @@ def _id_text(value: object) -> object:
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-def kind(value: object) -> str | None:
-    """The tag of a union's member; `validation.TAGS` has all of them, so that messages can leave them out of a path."""
-    tags: dict[type, str] = {str: "<text>", list: "<list>", dict: "<mapping>"}
-    return tags.get(type(value))
-
-
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
 Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
 Text = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
@@ -65,7 +61,6 @@ Many = Annotated[list[Entry], Field(fail_fast=True)]
 # Far beyond any arm, and near enough that no number overflows and no search takes hours.
 Length = Annotated[float, Field(ge=-1e6, le=1e6)]  # [mm]
 Depth = Annotated[float, Field(gt=0, le=1e6)]  # [mm]
-Stretch = Annotated[float, Field(ge=0, le=1e6)]  # [mm]
 Angle = Annotated[float, Field(ge=-36_000, le=36_000)]  # [deg]
 SpinBound = Annotated[float, Field(gt=0, le=3_600)]  # [deg]
 Rate = Annotated[float, Field(ge=0, le=1e4)]  # [deg/mm]
@@ -83,13 +78,6 @@ StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=MOST_BREAKP
 SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
 SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 Branch = Annotated[int, Field(ge=0, le=7)]
-
-
-class Form(BaseModel):
-    """Strict: text is no number, true is no 1, NaN is nothing at all, and an unknown key is an error."""
-
-    # built at the first use, so that `import zerorev` need not wait for it
-    model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)
 
 
 # --- robot and tool ---------------------------------------------------------------------------------------------------
@@ -171,109 +159,13 @@ class FrameForm(Form):
     )
 
 
-class FeedForm(Form):
-    """Feeds of the tip."""
+if TYPE_CHECKING:
 
-    plunge: Positive = Field(default=5.0, description="a number above 0 [mm/s]: feed of the plunge")
-    retract: Positive = Field(default=20.0, description="a number above 0 [mm/s]: feed of the retract")
+    class SettingsForm(Form):
+        """How to plan and how to run the motion."""
 
-
-class WeightsForm(Form):
-    """What a motion is judged by beside its reversals: the weighted sum of these is to be least."""
-
-    travel: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the joint travel")
-    margin: NotNegative = Field(default=0.0, description="a number, 0 or more: weight of the slowest joint")
-    plunge_rotation: NotNegative = Field(
-        default=0.0, description="a number, 0 or more: weight of the tool's spin during the plunge"
-    )
-    tool_speed_change: NotNegative = Field(
-        default=0.0, description="a number, 0 or more: weight of the change of the drill's speed by the spin"
-    )
-    limit_distance: NotNegative = Field(
-        default=0.0, description="a number, 0 or more: weight of the distance to the joint limits"
-    )
-    compliance_axial: NotNegative = Field(
-        default=0.0,
-        description="a number, 0 or more: weight of the give along the drill axis; needs joint_stiffness_nm_per_rad",
-    )
-    compliance_lateral: NotNegative = Field(
-        default=0.0,
-        description="a number, 0 or more: weight of the give across the drill axis; needs joint_stiffness_nm_per_rad",
-    )
-    manipulability: NotNegative = Field(
-        default=0.0, description="a number, 0 or more: weight of the distance from singular postures"
-    )
-
-
-class SettingsForm(Form):
-    """How to plan and how to run the motion."""
-
-    min_rate_deg_per_mm: Rate = Field(
-        default=0.01,
-        description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
-    )
-    min_rate_rule: Literal["pointwise", "mean"] = Field(
-        default="pointwise",
-        description="pointwise (the least motion at every point) or mean (on the average of each leg)",
-    )
-    psi_bound_deg: SpinBound | None = Field(
-        default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
-    )
-    legs: Literal["straight", "free"] = Field(
-        default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
-    )
-    max_twist_deg_per_mm: Twist = Field(
-        default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
-    )
-    objective: Annotated[
-        Annotated[Literal["travel", "margin", "plunge_rotation"], Tag("<text>")]
-        | Annotated[WeightsForm, Tag("<mapping>")],
-        Discriminator(kind),
-    ] = Field(
-        default="travel",
-        description="travel (least joint travel), margin (greatest slowest motion) or plunge_rotation (least spin "
-        "during the plunge), or a mapping of criteria to weights; decides among plans of equal reversals",
-    )
-    joint_stiffness_nm_per_rad: SixPositive | None = Field(
-        default=None,
-        description="six numbers above 0 [N m/rad]: stiffness of the joints, for the compliance at the tip; or null: "
-        "unknown",
-    )
-    reversal_weights: SixPositive = Field(
-        default=[1.0] * 6, description="six numbers above 0: what a reversal of each joint costs"
-    )
-    near_joints_deg: SixDeg | None = Field(
-        default=None,
-        description="six controller angles [deg] to which free turns are chosen nearest; or null: the turns farthest "
-        "from the limits",
-    )
-    blend_mm: Stretch = Field(default=1.0, description="a number, 0 or more [mm]: radius of the blend at the corner")
-    blend_shortfall_mm: Stretch | None = Field(
-        default=None,
-        description="a number from 0 to blend_mm [mm]: depth lost to the blend as measured; or null: half of blend_mm",
-    )
-    deepen_corner: bool = Field(
-        default=False,
-        description="true or false: whether the corner lies deeper by the shortfall, so that the depth is met",
-    )
-    lead_in_mm: Stretch = Field(
-        default=5.0, description="a number, 0 or more [mm]: length run along the plunge leg before the drill enters"
-    )
-    keep_lead_in: bool = Field(
-        default=False,
-        description="true or false: whether only motions count whose whole lead-in runs without a reversal; false: it "
-        "is shortened where it cannot",
-    )
-    feed_mm_s: FeedForm = Field(default=FeedForm(), description="a mapping of plunge and retract, each above 0 [mm/s]")
-    spindle_rpm: Positive | None = Field(
-        default=None,
-        description="a number above 0 [rev/min]: speed of the spindle; or null: the program need not know it",
-    )
-    proof_boxes: Annotated[int, Field(ge=0, le=100_000_000)] | None = Field(
-        default=None,
-        description="a whole number, 0 or more: how many boxes of legs each hole's proof may examine; 0: no proof;"
-        " or null: 100000 in a job, and 0 in a file of answers, which is then of a time without proofs",
-    )
+else:
+    SettingsForm = form_of(Settings, "SettingsForm", "How to plan and how to run the motion.")
 
 
 class HoleForm(Form):

@@ -9,36 +9,37 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.model._arrays import Array
+from zerorev.model.units import DEG, DEG_PER_MM, MM
 
 
 def m(value_mm: npt.ArrayLike) -> Array:
     """Metres of millimetres."""
-    return np.asarray(value_mm, dtype=np.float64) / 1e3
+    return MM.inside(np.asarray(value_mm, dtype=np.float64))
 
 
 def rad(value_deg: npt.ArrayLike) -> Array:
     """Radians of degrees."""
-    return np.deg2rad(np.asarray(value_deg, dtype=np.float64))
+    return DEG.inside(np.asarray(value_deg, dtype=np.float64))
 
 
 def rad_per_m(value_deg_per_mm: npt.ArrayLike) -> Array:
     """Radians per metre of degrees per millimetre."""
-    return rad(np.asarray(value_deg_per_mm, dtype=np.float64) * 1e3)
+    return DEG_PER_MM.inside(np.asarray(value_deg_per_mm, dtype=np.float64))
 
 
 def mm(value: npt.ArrayLike) -> Array:
     """Millimetres of metres."""
-    return np.asarray(value) * 1e3
+    return np.asarray(MM.outside(np.asarray(value)))
 
 
 def deg(value: npt.ArrayLike) -> Array:
     """Degrees of radians."""
-    return np.asarray(np.rad2deg(value))
+    return np.asarray(DEG.outside(np.asarray(value)))
 
 
 def deg_per_mm(value: npt.ArrayLike) -> Array:
     """Degrees per millimetre of radians per metre."""
-    return deg(value) / 1e3
+    return np.asarray(DEG_PER_MM.outside(np.asarray(value)))
 
 
 def plain(value: Any) -> Any:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Generic, Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
+from zerorev.model.measures import Measures, V
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
@@ -29,12 +30,11 @@ __all__ = [
     "Plan",
     "Score",
     "Strokes",
+    "V",
     "Verification",
     "Within",
     "named_holes",
 ]
-
-V = TypeVar("V", float, Array)
 
 Level = Literal["error", "warning", "info"]
 LegName = Literal["plunge", "target", "retract"]
@@ -107,32 +107,6 @@ class Score:
     def reversals(self) -> int:
         """Count of direction changes over all joints."""
         return sum(self.reversals_per_joint)
-
-
-@dataclass(frozen=True)
-class Measures(Generic[V]):
-    """What the criteria measure of a motion beside its reversals; or of many motions, in arrays of one shape.
-
-    Attributes:
-        travel: sum over the joints of the angle moved [rad].
-        margin: least rate of the joints that do not reverse [rad/m], by the rule of the motion threshold; 0 where all
-            reverse.
-        plunge_rotation: angle that the tool is spun through during the plunge [rad].
-        tool_speed_change: greatest rate at which it is spun at the feed of the plunge [rad/s] (thesis eq. 5.4).
-        limit_distance: least distance of a joint to a limit [1]: 0 at the limit, 1 in the middle of its range.
-        compliance_axial: greatest give of the tip along the drill axis [m/N], NaN where no stiffness is known.
-        compliance_lateral: greatest give of the tip across the drill axis [m/N], NaN where no stiffness is known.
-        manipulability: least Yoshikawa's manipulability [1]: 0 where the arm is singular, always below 1.
-    """
-
-    travel: V
-    margin: V
-    plunge_rotation: V
-    tool_speed_change: V
-    limit_distance: V
-    compliance_axial: V
-    compliance_lateral: V
-    manipulability: V
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.stated import scaled
 from zerorev.model.tool import Tool
 
 __all__ = ["resized", "resized_profile"]
@@ -27,7 +28,7 @@ def resized(
         settings: how; weights of criteria are not of any size, and stay as they are.
         factor: above 0.
     """
-    arm, T, shortfall = robot.arm, tool.T_flange_tcp.copy(), settings.blend_shortfall
+    arm, T = robot.arm, tool.T_flange_tcp.copy()
     T[:3, 3] *= factor
     a1, a2, b, c1, c2, c3, c4 = (length * factor for length in arm[:7])
     return (
@@ -39,16 +40,7 @@ def resized(
             depth=hole.depth * factor,
             profile=None if hole.profile is None else resized_profile(hole.profile, factor),
         ),
-        replace(
-            settings,
-            min_rate=settings.min_rate / factor,
-            max_twist=settings.max_twist / factor,
-            blend=settings.blend * factor,
-            blend_shortfall=None if shortfall is None else shortfall * factor,
-            lead_in=settings.lead_in * factor,
-            feed_plunge=settings.feed_plunge * factor,
-            feed_retract=settings.feed_retract * factor,
-        ),
+        scaled(settings, factor),
     )
 
 

@@ -13,7 +13,8 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Baseline, Event, HolePlan, Measures, Motion, Score
+from zerorev.model.measures import Measures
+from zerorev.model.plan import Baseline, Event, HolePlan, Motion, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool

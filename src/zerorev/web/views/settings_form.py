@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from nicegui import ui
@@ -13,35 +13,14 @@ from zerorev.files.schema import SettingsForm
 from zerorev.files.text import Document, FieldPath
 from zerorev.files.validation import problems
 from zerorev.model.job import Job, Settings
+from zerorev.model.stated import Choice, Number, Six, Stated, Switch, Weighed, Whole, stated
 from zerorev.web.session import Session
 from zerorev.web.state import with_settings
 from zerorev.web.views.fields import Fields, ends, form, group, number
 
 __all__ = ["settings_dialog", "settings_of"]
 
-WEIGHTED = "weights"
-OBJECTIVES = {
-    "travel": "least joint travel",
-    "margin": "greatest slowest motion",
-    "plunge_rotation": "least spin during the plunge",
-    WEIGHTED: "a weighted sum of criteria",
-}
-CRITERIA_WORDS = {
-    "travel": "joint travel",
-    "margin": "slowest joint",
-    "plunge_rotation": "spin in the plunge",
-    "tool_speed_change": "change of drill speed",
-    "limit_distance": "nearness to limits",
-    "compliance_axial": "give along the axis",
-    "compliance_lateral": "give across the axis",
-    "manipulability": "nearness to singularity",
-}
-RULES = {"pointwise": "at every point", "mean": "on the average of each leg"}
-LEGS = {"straight": "straight: spin even along each leg", "free": "free: spin varies along the axis"}
-DEPTHS = {False: "at the target, depth lost to the blend", True: "deeper, so that the depth is met"}
-LEAD_INS = {False: "it is shortened", True: "the motion is another one"}
-MAY_BE_EMPTY = ("psi_bound_deg", "blend_shortfall_mm", "spindle_rpm")
-SIX_OR_NONE = ("joint_stiffness_nm_per_rad", "near_joints_deg")
+WEIGHTED = "weights"  # the choice of a weighted sum, beside the words of the objective
 
 
 def settings_dialog(session: Session) -> Callable[[], None]:
@@ -54,8 +33,8 @@ def settings_dialog(session: Session) -> Callable[[], None]:
     fields = Fields()
     with card:
         with ui.element("div").classes("zr-scroll"):
-            _motion(fields)
-            _run(fields)
+            for legend in dict.fromkeys(each.group for each in stated(Settings) if each.group):
+                _part(fields, legend, [each for each in stated(Settings) if each.group == legend])
         dropped = ui.label().classes("zr-muted")
         fields.line()
 
@@ -88,47 +67,46 @@ def settings_dialog(session: Session) -> Callable[[], None]:
     return opened
 
 
-def _motion(fields: Fields) -> None:
-    with group("What counts as a good motion", "zr-two"):
-        fields.text(("min_rate_deg_per_mm",), "motion threshold [deg/mm]", "min-rate")
-        fields.choice(("min_rate_rule",), "kept", "min-rate-rule", RULES)
-        fields.choice(("objective",), "among equal reversals", "objective", OBJECTIVES)
-        fields.text(("psi_bound_deg",), "spins within ± [deg]", "psi-bound", placeholder="no bound")
-        fields.choice(("legs",), "legs", "legs-setting", LEGS)
-        fields.text(("max_twist_deg_per_mm",), "greatest twist of free legs [deg/mm]", "max-twist")
-    with ui.element("div") as weights, group("What weighs how much; 0 or empty: nothing", "zr-four"):
-        for name, words in CRITERIA_WORDS.items():
-            fields.text(("objective", name), words, f"weigh-{name}")
-    weights.bind_visibility_from(fields["objective",], "value", value=WEIGHTED)
-    _six(fields, "reversal_weights", "What a reversal of each joint costs", "weight")
-    _six(
-        fields, "joint_stiffness_nm_per_rad",
-        "Stiffness of each joint [N m/rad], for the give at the tip; empty: not known", "stiffness",
-    )  # fmt: skip
-    _six(
-        fields, "near_joints_deg",
-        "Angles to which free turns are chosen nearest [deg]; empty: far from the limits", "near",
-    )  # fmt: skip
+def _part(fields: Fields, legend: str, settings: Sequence[Stated]) -> None:
+    """The fields of one part of the form: single ones side by side, then the mappings and those of the joints."""
+    weighed = [each for each in settings if isinstance(each, Weighed)]
+    with group(legend, "zr-two"):
+        for each in settings:
+            if not isinstance(each, Weighed | Six):
+                _single(fields, each, {one.instead_of: one.label for one in weighed})
+    for each in weighed:
+        with ui.element("div") as weights, group("What weighs how much; 0 or empty: nothing", "zr-four"):
+            for one in stated(each.of):
+                fields.text((each.instead_of, one.name), one.label, f"weigh-{one.name}")
+        weights.bind_visibility_from(fields[each.instead_of,], "value", value=WEIGHTED)
+    for each in settings:
+        if isinstance(each, Six):
+            _six(fields, each)
 
 
-def _six(fields: Fields, key: str, legend: str, name: str) -> None:
-    """A field a joint, and below them what is accepted."""
-    with group(legend, "zr-six"):
+def _single(fields: Fields, each: Stated, or_weights: Mapping[str, str]) -> None:
+    """A field of text, or one to choose in."""
+    path, name = tuple(each.path), f"setting-{each.name}"
+    label = each.label or each.means or each.name
+    match each:
+        case Choice():
+            words = {word: f"{word}: {means}" for word, means in each.words.items()}
+            more = {WEIGHTED: or_weights[each.name]} if each.name in or_weights else {}
+            fields.choice(path, label, name, words | more)
+        case Switch():
+            fields.choice(path, label, name, {False: each.off, True: each.on})
+        case Number():
+            fields.text(path, f"{label} [{each.unit.name}]" if each.unit.name else label, name,
+                        placeholder=each.empty or each.none)  # fmt: skip
+
+
+def _six(fields: Fields, each: Six) -> None:
+    """A field for each joint, and below them what is accepted."""
+    unit, none = f" [{each.unit.name}]" if each.unit.name else "", f"; empty: {each.none}" if each.none else ""
+    with group(f"{each.means[0].upper()}{each.means[1:]}{unit}{none}", "zr-six"):
         for n in range(6):
-            fields.text((key, n), f"joint {n + 1}", f"{name}-{n + 1}")
-    fields.note(key)
-
-
-def _run(fields: Fields) -> None:
-    with group("How it is run", "zr-two"):
-        fields.text(("blend_mm",), "blend at the corner [mm]", "blend")
-        fields.text(("blend_shortfall_mm",), "depth lost to it [mm]", "shortfall", placeholder="half of the blend")
-        fields.choice(("deepen_corner",), "the corner lies", "deepen", DEPTHS)
-        fields.text(("lead_in_mm",), "lead-in [mm]", "lead-in")
-        fields.choice(("keep_lead_in",), "where a joint would reverse on it", "keep-lead-in", LEAD_INS)
-        fields.text(("feed_mm_s", "plunge"), "feed of the plunge [mm/s]", "feed-plunge")
-        fields.text(("feed_mm_s", "retract"), "feed of the retract [mm/s]", "feed-retract")
-        fields.text(("spindle_rpm",), "spindle [rev/min]", "spindle", placeholder="not known")
+            fields.text((*each.path, n), f"joint {n + 1}", f"setting-{each.name}-{n + 1}")
+    fields.note(each.path[0])
 
 
 def _shown(path: FieldPath, data: dict[str, Any]) -> Any:
@@ -143,12 +121,17 @@ def _shown(path: FieldPath, data: dict[str, Any]) -> Any:
         return WEIGHTED
     if isinstance(value, float):  # to the last bit, so that what is not touched stays the same
         return short if float(short := f"{value:.10g}") == value else repr(value)
-    return "" if value is None else value
+    return "" if value is None else value if isinstance(value, bool) else str(value)
 
 
 def _values(fields: Fields) -> dict[FieldPath, Any]:
     """What stands in the fields; numbers as numbers, where they are any."""
-    return {path: number(field.value) if isinstance(field, ui.input) else field.value for path, field in fields.items()}
+    whole = [each.path for each in stated(Settings) if isinstance(each, Whole)]
+    values = {}
+    for path, field in fields.items():
+        value = number(field.value) if isinstance(field, ui.input) else field.value
+        values[path] = int(value) if path in whole and isinstance(value, float) and value.is_integer() else value
+    return values
 
 
 def settings_of(values: dict[FieldPath, Any], job: Job) -> tuple[Settings | None, list[tuple[FieldPath, InputError]]]:
@@ -169,9 +152,10 @@ def settings_of(values: dict[FieldPath, Any], job: Job) -> tuple[Settings | None
         del whole["objective"]
         if weights is not None:
             data["objective"] = {name: value for name, value in weights.items() if value != ""}
-    data |= {key: None if key in MAY_BE_EMPTY and value == "" else value for key, value in whole.items()}
+    nullable = {each.path[0] for each in stated(Settings) if each.nullable}
+    data |= {key: None if key in nullable and value == "" else value for key, value in whole.items()}
     for key, given in parts.items():
-        if key in SIX_OR_NONE:
+        if key in nullable:
             data[key] = None if all(value == "" for value in given.values()) else [""] * 6
         for part, value in given.items() if data[key] is not None else ():
             data[key][part] = value

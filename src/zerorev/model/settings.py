@@ -1,0 +1,250 @@
+"""How a job is planned and run: each setting is stated here, once."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated, Literal
+
+from zerorev.errors import InputError
+from zerorev.model.measures import CRITERIA, Measures
+from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, attributes, check
+from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NM_PER_RAD, Unit
+
+__all__ = ["Settings", "Weights"]
+
+Objective = Literal["travel", "margin", "plunge_rotation"]
+Weights = tuple[tuple[str, float], ...]
+Legs = Literal["straight", "free"]
+
+GOOD = "What counts as a good motion"
+RUN = "How it is run"
+FEED = Nest("feed_mm_s", "Feeds of the tip.")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How to plan and how to run the motion; SI and radians here, millimetres and degrees in files."""
+
+    min_rate: Annotated[
+        float,
+        Number(
+            "least motion of every joint per mm of path; 0 switches it off",
+            DEG_PER_MM,
+            least=0,
+            note="The motion threshold; joints that reverse are not counted (theory §5)",
+            group=GOOD,
+            label="motion threshold",
+        ),
+    ] = math.radians(10.0)
+    min_rate_rule: Annotated[
+        Literal["pointwise", "mean"],
+        Choice(
+            words={"pointwise": "at every point", "mean": "on the average of each leg"},
+            note="How the motion threshold is kept",
+            group=GOOD,
+            label="kept",
+        ),
+    ] = "pointwise"
+    psi_bound: Annotated[
+        float | None,
+        Number(
+            "spins stay within +- this",
+            DEG,
+            none="the spin is periodic",
+            above=0,
+            most=3_600,
+            group=GOOD,
+            label="spins within ±",
+        ),
+    ] = None
+    legs: Annotated[
+        Legs,
+        Choice(words={"straight": "spin linear along each leg", "free": "spin varying freely along it"}, group=GOOD),
+    ] = "straight"
+    max_twist: Annotated[
+        float,
+        Number(
+            "greatest twist rate of free legs",
+            DEG_PER_MM,
+            above=0,
+            note="With `legs: straight` it does not count",
+            group=GOOD,
+            label="greatest twist of free legs",
+        ),
+    ] = math.radians(5e3)
+    objective: Annotated[
+        Objective,
+        Choice(
+            "decides among plans of equal reversals",
+            words={
+                "travel": "least joint travel",
+                "margin": "greatest slowest motion",
+                "plunge_rotation": "least spin during the plunge",
+            },
+            note="The mapping is of [criteria](#criteria), whose weighted sum is to be least",
+            group=GOOD,
+            label="among equal reversals",
+        ),
+    ] = "travel"
+    weights: Annotated[
+        Weights,
+        Weighed(
+            "pairs of a criterion and its weight, whose weighted sum is to be least instead of the objective",
+            instead_of="objective",
+            of=Measures,
+            group=GOOD,
+            label="a weighted sum of criteria",
+        ),
+    ] = ()
+    joint_stiffness: Annotated[
+        tuple[float, ...] | None,
+        Six(
+            "stiffness of the joints, for the compliance at the tip",
+            NM_PER_RAD,
+            none="unknown",
+            above=0,
+            note="Needed to weigh compliance, and to state it",
+            group=GOOD,
+        ),
+    ] = None
+    reversal_weights: Annotated[tuple[float, ...], Six("what a reversal of each joint costs", above=0, group=GOOD)] = (
+        1.0,
+    ) * 6
+    near_joints: Annotated[
+        tuple[float, ...] | None,
+        Six(
+            "controller angles to which free turns are chosen nearest",
+            DEG,
+            none="the turns farthest from the limits",
+            group=GOOD,
+        ),
+    ] = None
+    blend: Annotated[
+        float,
+        Number(
+            "radius of the blend at the corner",
+            MM,
+            least=0,
+            note="`$APO.CDIS`; 0 stops there exactly, with all joints at rest",
+            group=RUN,
+            label="blend at the corner",
+        ),
+    ] = 1e-3
+    blend_shortfall: Annotated[
+        float | None,
+        Number(
+            "depth lost to the blend as measured",
+            MM,
+            none="half of blend_mm",
+            least=0,
+            up_to="blend",
+            group=RUN,
+            label="depth lost to it",
+            empty="half of the blend",
+        ),
+    ] = None
+    deepen_corner: Annotated[
+        bool,
+        Switch(
+            "whether the corner lies deeper by the shortfall, so that the depth is met",
+            off="at the target, depth lost to the blend",
+            on="deeper, so that the depth is met",
+            group=RUN,
+            label="the corner lies",
+        ),
+    ] = False
+    lead_in: Annotated[
+        float,
+        Number("length run along the plunge leg before the drill enters", MM, least=0, group=RUN, label="lead-in"),
+    ] = 5e-3
+    keep_lead_in: Annotated[
+        bool,
+        Switch(
+            "whether only motions count whose whole lead-in runs without a reversal; false: it is shortened "
+            "where it cannot",
+            note="Within reach and limits, too; where it is shortened, there is a finding",
+            off="it is shortened",
+            on="the motion is another one",
+            group=RUN,
+            label="where a joint would reverse on it",
+        ),
+    ] = False
+    feed_plunge: Annotated[float, Number("feed of the plunge", MM_S, nest=FEED, key="plunge", above=0, group=RUN)] = (
+        5e-3
+    )
+    feed_retract: Annotated[
+        float, Number("feed of the retract", MM_S, nest=FEED, key="retract", above=0, group=RUN)
+    ] = 20e-3
+    spindle_rpm: Annotated[
+        float | None,
+        Number(
+            "speed of the spindle",
+            Unit("rev/min", si="rev/min"),
+            none="the program need not know it",
+            above=0,
+            note="Used for the finding on the drill's change of speed; the program does not switch the spindle",
+            group=RUN,
+            label="spindle",
+        ),
+    ] = None
+    proof_boxes: Annotated[
+        int,
+        Whole(
+            "how many boxes of legs each hole's proof may examine; 0: no proof",
+            note="The proof of the optimum, or of the deepest stroke; of free legs it may examine twice as many cells "
+            "of the twist plane",
+            before=0,
+            least=0,
+            most=100_000_000,
+            group=GOOD,
+            label="boxes of a proof",
+        ),
+    ] = 100_000
+
+    def __post_init__(self) -> None:
+        """Check ranges."""
+        check(self)
+        self._check_weights()
+
+    def _check_weights(self) -> None:
+        weights = dict(self.weights)
+        known = len(weights) == len(self.weights) and set(weights) <= set(CRITERIA)
+        if not known:
+            raise InputError("out of range", where="objective", accepted=f"each once: {', '.join(CRITERIA)}")
+        if not all(0 < weight < math.inf for weight in weights.values()):
+            raise InputError("out of range", where="objective", accepted="weights above 0")
+        for name in weights:
+            if CRITERIA[name].needs_stiffness and self.joint_stiffness is None:
+                raise InputError(
+                    f"{name} needs the stiffness of the joints, which is not given",
+                    where="objective",
+                    accepted="joint_stiffness_nm_per_rad beside it, six numbers above 0 [N m/rad]",
+                )
+
+    @property
+    def without_proof(self) -> Settings:
+        """The same without the proof of the optimum, for those who ask of very many places."""
+        return replace(self, proof_boxes=0)
+
+    @property
+    def passing_blend(self) -> float:
+        """Radius of the blend [m] at inner points other than the corner.
+
+        Where the job asks for an exact stop at the corner, it is 1 mm all the same: a stop within a leg would put every
+        joint at rest with the drill in the material.
+        """
+        return self.blend or 1e-3
+
+    @property
+    def shortfall(self) -> float:
+        """Depth lost to the blend [m]: as measured, or half the radius of a parabolic blend (theory §5)."""
+        return self.blend / 2 if self.blend_shortfall is None else self.blend_shortfall
+
+    @property
+    def corner(self) -> float:
+        """Stand-off of the programmed corner [m]: 0, or below 0 where it is placed deeper."""
+        return -self.shortfall if self.deepen_corner else 0.0
+
+
+Settings.__doc__ = f"{Settings.__doc__}\n{attributes(Settings)}"

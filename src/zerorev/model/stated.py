@@ -1,0 +1,327 @@
+"""A field that is stated once: what is accepted, in which unit, and what it means.
+
+The annotation of a noun's attribute carries the statement, as in `blend: Annotated[float, Number(...)] = 1e-3`. The
+keys of the files with their units and ranges (`zerorev.files.stated_forms`), the noun's own check, the options of the
+command line, the form of the app and the tables of the documentation all come out of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
+from typing import Any, TypeVar, get_type_hints
+
+from zerorev.errors import InputError
+from zerorev.model.units import ONE, Unit
+
+__all__ = [
+    "UNSET",
+    "Choice",
+    "Measured",
+    "Nest",
+    "Number",
+    "Six",
+    "Stated",
+    "Switch",
+    "Weighed",
+    "Whole",
+    "attributes",
+    "check",
+    "scaled",
+    "stated",
+]
+
+N = TypeVar("N")
+
+UNSET = object()
+"""What stands where nothing is stated; a default may be None."""
+
+
+@dataclass(frozen=True)
+class Nest:
+    """A key of a file below which several attributes stand.
+
+    Attributes:
+        key: in the file.
+        means: what stands there, one sentence.
+    """
+
+    key: str
+    means: str
+
+
+@dataclass(frozen=True)
+class Stated:
+    """What is said of one attribute; each kind of value has its own class below.
+
+    Attributes:
+        means: what it is, for the schema, the command line and the table.
+        unit: outside and inside.
+        key: in a file, where it is not the attribute's name with the unit's suffix.
+        nest: below which key of the file it stands.
+        none: what null means; empty where null is not accepted.
+        before: what a file of answers without the key means, where that is not the default; it was made before the
+            key existed.
+        note: what the table says besides.
+        group: legend of its part of the app's form; empty: it is not in the form.
+        label: in the form; else its name.
+        empty: what an empty field of the form means; else what null means.
+        name: of the attribute, filled in by `stated`.
+        default: of the attribute, filled in by `stated`.
+    """
+
+    means: str = ""
+    unit: Unit = ONE
+    _: KW_ONLY
+    key: str = ""
+    nest: Nest | None = None
+    none: str = ""
+    before: object = UNSET
+    note: str = ""
+    group: str = ""
+    label: str = ""
+    empty: str = ""
+    name: str = ""
+    default: object = UNSET
+
+    joined = ": "  # what is accepted and what it means
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """The keys that lead to it in a file."""
+        key = self.key or (f"{self.name}_{self.unit.suffix}" if self.unit.suffix else self.name)
+        return (key,) if self.nest is None else (self.nest.key, key)
+
+    @property
+    def nullable(self) -> bool:
+        """Whether a file may have null."""
+        return bool(self.none) or self.before is not UNSET
+
+    @property
+    def accepted(self) -> str:
+        """What a file may have, in words."""
+        raise NotImplementedError
+
+    @property
+    def described(self) -> str:
+        """What is accepted and what it means, in one line."""
+        none = self.none
+        if self.before is not UNSET:
+            none = f"{self.default} in a job, and {self.before} in a file of answers from before this key existed"
+        means = f"{self.joined}{self.means}" if self.means else ""
+        return f"{self.accepted}{means}{f'; or null: {none}' if none else ''}"
+
+    def admits(self, value: Any, noun: object) -> str:
+        """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
+        return ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number(Stated):
+    """One number.
+
+    Attributes:
+        least: what it has to be at least, in the unit outside.
+        above: what it has to be above.
+        most: the largest that files accept; else the unit's.
+        up_to: the attribute that it may not exceed.
+    """
+
+    least: float | None = None
+    above: float | None = None
+    most: float | None = None
+    up_to: str = ""
+
+    what = "a number"
+
+    @property
+    def accepted(self) -> str:
+        """What a file may have, in words."""
+        if self.up_to:
+            span = f" from {self.least:g} to {self.up_to}_{self.unit.suffix}"
+        elif self.above is not None:
+            span = f" above {self.above:g}"
+        else:
+            span = "" if self.least is None else f", {self.least:g} or more"
+        return f"{self.what}{span}{f' [{self.unit.name}]' if self.unit.name else ''}"
+
+    def admits(self, value: Any, noun: object) -> str:
+        """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
+        if (value is None and self.none) or (value is not None and self._in_range(value, noun)):
+            return ""
+        if self.up_to:
+            span = f"{self.least:g} to {self.up_to}"
+        else:
+            span = f"{self.least:g} or more" if self.above is None else f"above {self.above:g}"
+        return f"{span}, or none: {self.none}" if self.none else span
+
+    def _in_range(self, value: float, noun: object) -> bool:
+        # for NaN, of which no comparison is true, none of these is
+        low = self.above is None or value > self.unit.inside(self.above)
+        low = low and (self.least is None or value >= self.unit.inside(self.least))
+        return low and (not self.up_to or value <= getattr(noun, self.up_to))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Measured(Number):
+    """One number that was computed; NaN, null in a file, where it is undefined.
+
+    Attributes:
+        added: whether older files of answers do not have it; they claim nothing then.
+    """
+
+    most: float | None = 1e15
+    added: bool = False
+
+    @property
+    def nullable(self) -> bool:
+        """Whether a file may have null."""
+        return True
+
+    @property
+    def described(self) -> str:
+        """What is accepted and what it means, in one line."""
+        return f"{self.accepted}: {self.means}{f'; null: {self.none}' if self.none else ''}"
+
+
+class Whole(Number):
+    """One whole number."""
+
+    what = "a whole number"
+
+
+class Six(Number):
+    """A number for each joint, in a tuple."""
+
+    what = "six numbers"
+
+    def admits(self, value: Any, noun: object) -> str:
+        """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
+        if value is None and self.none:
+            return ""
+        if len(value) == 6 and all(abs(each) < math.inf and self._in_range(each, noun) for each in value):
+            return ""
+        return self.what if self.above is None else f"{self.what} above {self.above:g}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice(Stated):
+    """One of several words.
+
+    Attributes:
+        words: what each means.
+    """
+
+    words: Mapping[str, str]
+
+    joined = "; "
+
+    @property
+    def accepted(self) -> str:
+        """What a file may have, in words."""
+        *others, last = (f"{word} ({means})" for word, means in self.words.items())
+        return f"{', '.join(others)} or {last}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Switch(Stated):
+    """Yes or no.
+
+    Attributes:
+        off: what no means, in the app's form.
+        on: what yes means there.
+    """
+
+    off: str = "no"
+    on: str = "yes"
+
+    @property
+    def accepted(self) -> str:
+        """What a file may have, in words."""
+        return "true or false"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Weighed(Stated):
+    """Names and their weights, as pairs, which a file has as a mapping in the place of a word.
+
+    Attributes:
+        instead_of: the attribute of the word; where something weighs, the word does not count.
+        of: the noun whose stated attributes can be weighed (`zerorev.model.measures`).
+    """
+
+    instead_of: str
+    of: type
+
+    @property
+    def accepted(self) -> str:
+        """What a file may have, in words."""
+        return "a mapping of criteria to weights"
+
+
+def stated(noun: type[Any]) -> tuple[Stated, ...]:
+    """The statements of a noun's attributes in order, each with its name and default.
+
+    Args:
+        noun: a dataclass; attributes without a statement are left out.
+    """
+    if noun not in _KNOWN:
+        _KNOWN[noun] = tuple(_stated(noun))
+    return _KNOWN[noun]
+
+
+_KNOWN: dict[type[Any], tuple[Stated, ...]] = {}
+
+
+def _stated(noun: type[Any]) -> Iterator[Stated]:
+    hints = get_type_hints(noun, include_extras=True)
+    for field in fields(noun):
+        for said in getattr(hints[field.name], "__metadata__", ()):
+            if isinstance(said, Stated):
+                default = UNSET if field.default is MISSING else field.default
+                yield replace(said, name=field.name, default=default)
+
+
+def check(noun: object) -> None:
+    """Refuse a noun with an attribute that is out of range.
+
+    Raises:
+        InputError: with the attribute's name, and what would be accepted.
+    """
+    for each in stated(type(noun)):
+        accepted = each.admits(getattr(noun, each.name), noun)
+        if accepted:
+            raise InputError("out of range", where=each.name, accepted=accepted)
+
+
+def scaled(noun: N, factor: float) -> N:
+    """The noun at another size: lengths times the factor, rates per length divided by it (theory §6).
+
+    Args:
+        noun: a dataclass with stated attributes.
+        factor: above 0; with a power of two no digit changes.
+    """
+    changed: dict[str, Any] = {}
+    for each in stated(type(noun)):
+        value = getattr(noun, each.name)
+        if each.unit.length == 0 or value is None:
+            continue
+        power = factor ** abs(each.unit.length)
+        grown = [
+            one * power if each.unit.length > 0 else one / power
+            for one in (value if isinstance(each, Six) else [value])
+        ]
+        changed[each.name] = tuple(grown) if isinstance(each, Six) else grown[0]
+    return replace(noun, **changed)  # type: ignore[type-var]
+
+
+def attributes(noun: type) -> str:
+    """The part of a docstring that says what each stated attribute is, in the units inside."""
+    lines = ["", "Attributes:"]
+    for each in stated(noun):
+        unit = f" [{each.unit.si}]" if each.unit.si else ""
+        none = f"; None: {each.none}" if each.none else ""
+        choices = f"{each.accepted}{each.joined * bool(each.means)}" if isinstance(each, Choice) else ""
+        lines.append(f"    {each.name}: {choices}{each.means}{unit}{none}.")
+    return "\n".join(lines)

@@ -1,0 +1,135 @@
+"""A made-up setting, added to a copy of the package by its declaration alone.
+
+The copy has to know it wherever a setting is known: in the schemas, when files are read and written, on
+the command line, in the app and in the tables of the documentation.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import zerorev
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = Path(zerorev.__file__).parent
+OLD_PLAN = ROOT / "tests" / "data" / "program" / "fuzz.json"
+
+SETTING = """
+    grit: Annotated[
+        float | None,
+        Number(
+            means="size of the grit", none="no grit", unit=MM, least=0, most=9, note="Made up", group=RUN,
+            label="grit",
+        ),
+    ] = 0.25e-3
+"""
+
+
+@pytest.fixture
+def edited(tmp_path):
+    """Runs a script with a copy of the package in which pieces of text stand before others; returns what it prints."""
+    copy = tmp_path / "zerorev"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__", "kernels"))
+    (copy / "kernels").symlink_to(PACKAGE / "kernels")
+
+    def run(edits: list[tuple[str, str, str]], script: str) -> dict:
+        for file, before, piece in edits:
+            text = (copy / file).read_text()
+            assert text.count(before) == 1
+            (copy / file).write_text(text.replace(before, piece.rstrip(" ") + before))
+        done = subprocess.run(
+            [sys.executable, "-c", script, str(OLD_PLAN)], capture_output=True, text=True, cwd=tmp_path, check=False,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)]), "COLUMNS": "200"},
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout.splitlines()[-1])
+
+    return run
+
+
+COMMON = """
+import io, json, sys
+from contextlib import redirect_stdout
+import numpy as np
+import zerorev as zr
+from zerorev.files import io as files
+from tools import tables
+from zerorev.files.schema import JobFile
+from zerorev.files.plan_schema import PlanFile
+from nicegui import ui
+from zerorev.model.stated import scaled, stated
+from zerorev.web.views import settings_form
+from zerorev.web.views.fields import Fields
+
+JOB = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "min_rate_deg_per_mm": 0, "proof_boxes": 0, "holes": [
+    {"id": 1, "target_mm": [500, 300, 800], "direction": [1, 0, 0], "depth_mm": 50,
+     "psi_deg": [14.16, -5.94, -30.46], "branch": 4}]}
+old = zr.read_plan(sys.argv[1])
+fields = Fields()
+for legend in dict.fromkeys(each.group for each in stated(zr.Settings)):
+    settings_form._part(fields, legend, [each for each in stated(zr.Settings) if each.group == legend])
+labels = {path: field.props.get("label") for path, field in fields.items()}
+"""
+
+ASK_SETTING = (
+    COMMON
+    + """
+from zerorev.cli import main
+asked = files.job_from_dict(JOB | {"grit_mm": 0.5})
+said = io.StringIO()
+with redirect_stdout(said):
+    main(["plan", "--help"])
+json.dump(JOB, open("job.yaml", "w"))
+replaced = io.StringIO()
+with redirect_stdout(replaced):
+    main(["plan", "job.yaml", "--json", "--grit-mm", "0.75"])
+refused = []
+for bad in (lambda: zr.Settings(grit=-1.0), lambda: files.job_from_dict(JOB | {"grit_mm": 10})):
+    try:
+        bad()
+    except zr.InputError as error:
+        refused.append(str(error))
+form, _ = settings_form.settings_of({("grit_mm",): ""}, asked)
+print(json.dumps({
+    "schema": JobFile.model_json_schema()["properties"]["grit_mm"],
+    "plan schema": "grit_mm" in PlanFile.model_json_schema()["$defs"]["SettingsForm"]["properties"],
+    "read": asked.settings.grit, "older plan": old.settings.grit,
+    "written": files.plan_to_json(old)["settings"]["grit_mm"],
+    "job": files.job_from_dict(JOB).settings.grit,
+    "help": "".join(line for line in said.getvalue().splitlines() if "--grit-mm" in line),
+    "replaced": json.loads(replaced.getvalue())["settings"]["grit_mm"],
+    "form": labels[("grit_mm",)], "emptied": form.grit,
+    "table": tables.settings_table(), "doc": zr.Settings.__doc__,
+    "doubled": scaled(asked.settings, 2.0).grit, "refused": refused,
+}))
+"""
+)
+
+
+def test_a_setting_is_one_declaration(edited):
+    found = edited([("model/settings.py", "\n    def __post_init__(self)", SETTING)], ASK_SETTING)
+    assert found["schema"]["description"] == "a number, 0 or more [mm]: size of the grit; or null: no grit"
+    assert found["schema"]["default"] == 0.25
+    assert found["plan schema"]
+    assert found["read"] == pytest.approx(0.5e-3)
+    assert found["job"] == found["older plan"] == pytest.approx(0.25e-3)
+    assert found["written"] == 0.25
+    assert "A number, 0 or more [mm]: size of the grit" in found["help"]
+    assert found["replaced"] == 0.75
+    assert found["form"] == "grit [mm]"
+    assert found["emptied"] is None
+    assert (
+        "| `grit_mm` | 0.25 | a number, 0 or more [mm]: size of the grit; or null: no grit. Made up |" in found["table"]
+    )
+    assert "grit: size of the grit [m]; None: no grit." in found["doc"]
+    assert found["doubled"] == pytest.approx(1e-3)
+    python, file = found["refused"]
+    assert python == "grit: out of range (accepted: 0 or more, or none: no grit)"
+    assert "grit_mm: 10 is too large: 9 is the most (accepted: a number, 0 or more [mm]: size of the grit" in file

@@ -1,0 +1,87 @@
+"""The tables of the documentation that are made from what is stated once: the settings of a job, and the criteria.
+
+A page has a table between two marks, `<!-- settings: made by make reference -->` and `<!-- end of settings -->`.
+`python tools/tables.py` rewrites them; a test fails where one is out of date.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+
+from zerorev.files.stated_forms import default_of
+from zerorev.model.measures import CRITERIA
+from zerorev.model.settings import Settings
+from zerorev.model.stated import Choice, Stated, Weighed, stated
+
+PAGES = Path(__file__).parents[1] / "docs"
+
+
+def settings_table() -> str:
+    """Key, default and meaning of each setting."""
+    return _table(("key", "default", "meaning"), _settings())
+
+
+def _settings() -> Iterator[tuple[str, ...]]:
+    mappings = {each.instead_of: each.accepted for each in stated(Settings) if isinstance(each, Weighed)}
+    for each in stated(Settings):
+        if isinstance(each, Weighed):
+            continue
+        words = each.described
+        if each.name in mappings:
+            words = words.replace(each.accepted, f"{each.accepted}, or {mappings[each.name]}", 1)
+        for word in each.words if isinstance(each, Choice) else ():
+            words = words.replace(f"{word} (", f"`{word}` (", 1)
+        yield f"`{'.'.join(each.path)}`", _default(each), f"{words}. {each.note}".removesuffix(". ")
+
+
+def _default(each: Stated) -> str:
+    match default_of(each):
+        case None:
+            return "null"
+        case bool(value):
+            return str(value).lower()
+        case str(value):
+            return f"`{value}`"
+        case [value, *_]:
+            return f"six times {value:g}"
+        case value:
+            return f"{value:.10g}"
+
+
+def criteria_table() -> str:
+    """Name, cost and key in a plan file of each criterion."""
+    rows = ((f"`{each.name}`", each.cost, f"`{each.path[-1]}`") for each in CRITERIA.values())
+    return _table(("criterion", "cost", "figure in a plan file"), rows)
+
+
+TABLES: dict[str, Callable[[], str]] = {"settings": settings_table, "criteria": criteria_table}
+
+
+def with_tables(text: str) -> str:
+    """A page with its tables as they have to be."""
+    for name, table in TABLES.items():
+        begin, end = f"<!-- {name}: made by make reference -->\n", f"<!-- end of {name} -->\n"
+        before, found, rest = text.partition(begin)
+        if found:
+            text = f"{before}{begin}\n{table()}\n{end}{rest.partition(end)[2]}"
+    return text
+
+
+def pages() -> Iterator[tuple[Path, str, str]]:
+    """The pages that have a table: where, as they are, and as they have to be."""
+    for page in sorted(PAGES.rglob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        if any(re.search(f"<!-- {name}: made by", text) for name in TABLES):
+            yield page, text, with_tables(text)
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
+    lines = [f"| {' | '.join(row)} |\n" for row in (head, *rows)]
+    return "".join([lines[0], f"|{'---|' * len(head)}\n", *lines[1:]])
+
+
+if __name__ == "__main__":
+    for page, _, made in pages():
+        page.write_text(made, encoding="utf-8")
