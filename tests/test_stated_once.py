@@ -1,6 +1,6 @@
-"""A made-up setting, added to a copy of the package by its declaration alone.
+"""A made-up setting and a made-up figure of an answer, added to a copy of the package by a declaration alone.
 
-The copy has to know it wherever a setting is known: in the schemas, when files are read and written, on
+The copy has to know them wherever they are known: in the schemas, when files are read and written, on
 the command line, in the app and in the tables of the documentation.
 """
 
@@ -13,6 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import zerorev
@@ -29,6 +30,9 @@ SETTING = """
             label="grit",
         ),
     ] = 0.25e-3
+"""
+FIGURE = """
+    wobble: Annotated[float, Figure("made up", DEG, null=math.nan, added=True)] = 0.5
 """
 
 
@@ -133,3 +137,34 @@ def test_a_setting_is_one_declaration(edited):
     python, file = found["refused"]
     assert python == "grit: out of range (accepted: 0 or more, or none: no grit)"
     assert "grit_mm: 10 is too large: 9 is the most (accepted: a number, 0 or more [mm]: size of the grit" in file
+
+
+ASK_FIGURE = """
+import json, sys
+from dataclasses import replace
+import zerorev as zr
+from zerorev.files import io as files
+from zerorev.files.plan_schema import PlanFile
+
+old = zr.read_plan(sys.argv[1])
+first = old.holes[0]
+new = replace(old, holes=(replace(first, verified=replace(first.verified, wobble=0.25)), *old.holes[1:]))
+zr.write_plan(new, "new.json")
+print(json.dumps({
+    "schema": PlanFile.model_json_schema()["$defs"]["VerifiedForm"]["properties"]["wobble_deg"],
+    "needed": PlanFile.model_json_schema()["$defs"]["VerifiedForm"]["required"],
+    "older plan": str(first.verified.wobble), "doc": zr.model.plan.Verification.__doc__,
+    "written": files.plan_to_json(new)["holes"][0]["verified"]["wobble_deg"],
+    "again": zr.read_plan("new.json").holes[0].verified.wobble,
+}))
+"""
+
+
+def test_a_figure_of_an_answer_is_one_declaration(edited):
+    found = edited([("model/plan.py", "    subject: str | None", FIGURE)], ASK_FIGURE)
+    assert found["schema"]["description"] == "a number [deg]: made up"
+    assert "wobble_deg" not in found["needed"]
+    assert found["older plan"] == "nan"
+    assert "wobble: made up [rad]." in found["doc"]
+    assert found["written"] == pytest.approx(np.rad2deg(0.25))
+    assert found["again"] == pytest.approx(0.25)

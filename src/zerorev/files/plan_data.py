@@ -12,16 +12,11 @@ from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.plan import (
-    Baseline,
-    Certificate,
     HolePlan,
     Motion,
-    Optimality,
     Plan,
     Score,
     Strokes,
-    Verification,
-    Within,
 )
 
 __all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
@@ -57,7 +52,7 @@ def plan_head(plan: Plan) -> dict[str, Any]:
         "tool": tool_data(plan.tool),
         "part_frame": frame_data(plan.T_base_part),
         "settings": settings_data(plan.settings),
-        "findings": [vars(finding) for finding in plan.findings],
+        "findings": [data_of(finding) for finding in plan.findings],
     }
 
 
@@ -89,14 +84,18 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         **_score_data(answer.score),
         **_critical_data(answer.critical_rates),
         "wrist_offset_mm": mm(answer.wrist_offset),
-        "optimality": _optimality_data(answer.optimality),
-        "baseline": _baseline_data(answer.baseline),
-        "verified": _verified_data(answer.verified),
-        "certificate": _certificate_data(answer.certificate) if answer.certificate else None,
-        "certified_within": _within_data(answer.certified_within) if answer.certified_within else None,
-        "criteria": data_of(answer.measures) if answer.measures else None,
-        "findings": [vars(finding) for finding in answer.findings],
+        "optimality": _data(answer.optimality),
+        "baseline": _data(answer.baseline),
+        "verified": _data(answer.verified),
+        "certificate": _data(answer.certificate),
+        "certified_within": _data(answer.certified_within),
+        "criteria": _data(answer.measures),
+        "findings": [data_of(finding) for finding in answer.findings],
     }
+
+
+def _data(noun: object) -> dict[str, Any] | None:
+    return None if noun is None else data_of(noun)
 
 
 def _critical_data(kappa: Array | None) -> dict[str, Any]:
@@ -139,62 +138,9 @@ def _score_data(score: Score | None) -> dict[str, Any]:
     return {
         "reversals": score.reversals,
         "reversals_per_joint": score.reversals_per_joint,
-        "events": [{"joint": e.joint, "leg": e.leg, "standoff_mm": mm(e.standoff)} for e in score.events],
+        "events": [data_of(event) for event in score.events],
         "travel_deg": deg(score.travel),
         "min_rate_deg_per_mm": deg_per_mm(score.min_rate),
         "mean_rate_deg_per_mm": deg_per_mm(score.mean_rate),
         "limit_distance_deg": deg(score.limit_distance),
     }
-
-
-def _baseline_data(baseline: Baseline | None) -> dict[str, Any] | None:
-    if baseline is None:
-        return None
-    return {
-        "reversals": baseline.reversals,
-        "reversals_per_joint": baseline.reversals_per_joint,
-        "travel_deg": deg(baseline.travel),
-    }
-
-
-def _optimality_data(optimality: Optimality | None) -> dict[str, Any] | None:
-    if optimality is None:
-        return None
-    travel, gap = optimality.travel_at_least, optimality.gap
-    return {
-        "reversals_at_least": optimality.reversals_at_least,
-        "travel_at_least_deg": None if travel is None else deg(travel),
-        "gap_percent": None if gap is None else 100 * gap,
-        "proven": optimality.proven,
-    }
-
-
-def _verified_data(verified: Verification | None) -> dict[str, Any] | None:
-    if verified is None:
-        return None
-    return {
-        "passed": verified.passed,
-        "samples": verified.samples,
-        "blend_samples": verified.blend_samples,
-        "reversals_per_joint": verified.reversals_per_joint,
-        "max_position_error_mm": mm(verified.max_position_error),
-        "max_rotation_error_deg": deg(verified.max_rotation_error),
-        "max_joint_step_deg": deg(verified.max_joint_step),
-        "min_limit_distance_deg": deg(verified.min_limit_distance),
-        "failures": verified.failures,
-    }
-
-
-def _certificate_data(certificate: Certificate) -> dict[str, Any]:
-    return {
-        "verdict": certificate.verdict,
-        "pieces": certificate.pieces,
-        "min_rate_deg_per_mm": deg_per_mm(certificate.min_rate),
-        "blend_min_rate_deg_per_mm": deg_per_mm(certificate.blend_min_rate),
-        "limit_distance_deg": deg(certificate.limit_distance),
-        "reasons": certificate.reasons,
-    }
-
-
-def _within_data(within: Within) -> dict[str, Any]:
-    return {"mm": mm(within.position), "deg": deg(within.rotation)}

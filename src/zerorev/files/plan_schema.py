@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -11,10 +11,7 @@ from zerorev.files.schema import (
     MOST_HOLES,
     Branch,
     Depth,
-    Form,
     FrameForm,
-    Many,
-    Measured,
     Name,
     NotNegative,
     PlaceMm,
@@ -23,11 +20,11 @@ from zerorev.files.schema import (
     SixDeg,
     SpinsDeg,
     StandoffsMm,
-    Text,
     ToolForm,
 )
-from zerorev.files.stated_forms import form_of
+from zerorev.files.stated_forms import Counted, Form, Many, SixCounted, SixMeasured, keys_of
 from zerorev.model.measures import Measures
+from zerorev.model.plan import Baseline, Certificate, Event, Finding, Optimality, Verification, Within
 
 __all__ = [
     "BaselineForm",
@@ -44,10 +41,7 @@ __all__ = [
     "VerifiedForm",
 ]
 
-SixMeasured = Annotated[list[Measured | None], Field(min_length=6, max_length=6)]
 Unit = Annotated[list[Annotated[float, Field(ge=-1.001, le=1.001)]], Field(min_length=3, max_length=3)]
-Count = Annotated[int, Field(ge=0, le=10**9)]
-SixCounts = Annotated[list[Count], Field(min_length=6, max_length=6)]
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
@@ -63,34 +57,19 @@ class PlanTool(ToolForm):
     sha256: Sha256 = Field(description="64 hexadecimal digits: SHA-256 of the tool's numbers")
 
 
+@keys_of(Finding, needed=True)
 class FindingForm(Form):
     """Something a user should know."""
 
-    level: Literal["error", "warning", "info"] = Field(description="error, warning or info")
-    kind: Text = Field(description="text: a fixed word for machines")
-    message: Text = Field(description="text: one sentence for people")
-    hole: Text | None = Field(description="text: the hole's id; or null: the whole plan is meant")
+
+@keys_of(Measures)
+class CriteriaForm(Form):
+    """What the criteria measure of a motion beside its reversals; null where it is undefined."""
 
 
-if TYPE_CHECKING:
-
-    class CriteriaForm(Form):
-        """What the criteria measure of a motion beside its reversals; null where it is undefined."""
-
-else:
-    CriteriaForm = form_of(
-        Measures,
-        "CriteriaForm",
-        "What the criteria measure of a motion beside its reversals; null where it is undefined.",
-    )
-
-
+@keys_of(Event, needed=True)
 class EventForm(Form):
     """A reversal."""
-
-    joint: Annotated[int, Field(ge=1, le=6)] = Field(description="a whole number from 1 to 6")
-    leg: Literal["plunge", "target", "retract"] = Field(description="plunge, target (at the corner) or retract")
-    standoff_mm: Measured = Field(description="a number [mm]: where")
 
 
 class GivenForm(Form):
@@ -112,73 +91,32 @@ class JointsDegForm(Form):
     )
 
 
+@keys_of(Optimality, needed=True)
 class OptimalityForm(Form):
     """How much better a motion of straight legs could be, by a global search that bounds."""
 
-    reversals_at_least: NotNegative = Field(description="a number: no motion has fewer reversals (weighted)")
-    travel_at_least_deg: NotNegative | None = Field(
-        description="a number [deg]: none with so few reversals that keeps the threshold travels less; null: no bound"
-    )
-    gap_percent: NotNegative | None = Field(
-        description="a number [%]: what the planned motion travels above that, of its own travel; null: no bound"
-    )
-    proven: bool = Field(
-        description="true or false: whether nothing was left undecided (without a motion: that there is none; below"
-        " the motion threshold: that no motion with so few reversals keeps it; else: a gap of at most 0.1 %)"
-    )
 
-
+@keys_of(Baseline, needed=True)
 class BaselineForm(Form):
     """The same hole drilled with constant spin, psi = psi_start, on the plan's branch."""
 
-    reversals: Count = Field(description="a whole number: reversals of all joints")
-    reversals_per_joint: SixCounts = Field(description="six whole numbers")
-    travel_deg: NotNegative = Field(description="a number [deg]: sum over the joints of the angle moved")
 
-
+@keys_of(Verification, needed=True)
 class VerifiedForm(Form):
     """What the independent check looked at, and what it found."""
 
-    passed: bool = Field(description="true or false: whether the plan's claims hold")
-    samples: Count = Field(description="a whole number: points looked at on the two legs")
-    blend_samples: Count = Field(description="a whole number: points looked at on the blended corner")
-    reversals_per_joint: SixCounts = Field(description="six whole numbers, as counted by the check")
-    max_position_error_mm: Measured | None = Field(description="a number [mm]: the tip off its path; null: undefined")
-    max_rotation_error_deg: Measured | None = Field(
-        description="a number [deg]: the tool off its pose; null: undefined"
-    )
-    max_joint_step_deg: Measured | None = Field(
-        description="a number [deg]: greatest step between neighbouring samples; null: undefined"
-    )
-    min_limit_distance_deg: Measured | None = Field(
-        description="a number [deg]: least distance to a joint limit; null: undefined"
-    )
-    failures: Many[Text] = Field(description="a list of text: one sentence a failed check")
 
-
+@keys_of(Certificate, needed=True)
 class CertificateForm(Form):
     """What is proven of the continuous motion; bounds are null where nothing is proven.
 
     It is not recomputed by `zerorev check`, which leaves it out; with --certify it is proven again and replaced.
     """
 
-    verdict: Literal["certified", "refuted", "undecided"] = Field(
-        description="certified (proven), refuted (proven to be wrong) or undecided"
-    )
-    pieces: Count = Field(description="a whole number: pieces into which the motion was cut")
-    min_rate_deg_per_mm: SixMeasured = Field(description="six numbers [deg/mm]: on the legs no joint moves slower")
-    blend_min_rate_deg_per_mm: SixMeasured = Field(
-        description="six numbers [deg/mm]: in the blends no joint moves slower; null without one"
-    )
-    limit_distance_deg: SixMeasured = Field(description="six numbers [deg]: no joint comes nearer to a limit")
-    reasons: Many[Text] = Field(description="a list of text: what is refuted or undecided, one sentence each")
 
-
+@keys_of(Within, needed=True)
 class WithinForm(Form):
     """How far the part may stand off its part frame."""
-
-    mm: NotNegative = Field(description="a number [mm]: its origin, along each axis of the part frame")
-    deg: NotNegative = Field(description="a number [deg]: turned about that origin, about any axis")
 
 
 class PlanHole(Form):
@@ -209,8 +147,8 @@ class PlanHole(Form):
     standoff_mm: StandoffsMm | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
     psi_deg: SpinsDeg | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
     joints_deg: JointsDegForm | None = Field(description="a mapping of start, target, end and breakpoints")
-    reversals: Count | None = Field(description="a whole number: reversals of all joints")
-    reversals_per_joint: SixCounts | None = Field(description="six whole numbers")
+    reversals: Counted | None = Field(description="a whole number: reversals of all joints")
+    reversals_per_joint: SixCounted | None = Field(description="six whole numbers")
     events: Many[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
     travel_deg: NotNegative | None = Field(description="a number [deg]: sum over the joints of the angle moved")
     min_rate_deg_per_mm: SixMeasured | None = Field(

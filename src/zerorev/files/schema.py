@@ -6,11 +6,11 @@ Schemas (docs/schemas) both show it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeVar
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
 
-from zerorev.files.stated_forms import Form, form_of, kind
+from zerorev.files.stated_forms import Form, Many, Words, keys_of, kind
 from zerorev.model.settings import Settings
 from zerorev.visible import one_line
 
@@ -24,7 +24,6 @@ __all__ = [
     "HoleForm",
     "JobFile",
     "Length",
-    "Many",
     "Name",
     "NotNegative",
     "PlaceMm",
@@ -34,15 +33,12 @@ __all__ = [
     "RobotForm",
     "SettingsForm",
     "SpinBound",
-    "Text",
     "Three",
     "ToolFile",
     "ToolForm",
     "Twist",
     "kind",
 ]  # fmt: skip
-
-Entry = TypeVar("Entry")
 
 MOST_HOLES = 100_000
 MOST_BREAKPOINTS = 10_000  # of a motion
@@ -54,9 +50,6 @@ def _id_text(value: object) -> object:
 
 Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
 Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
-Text = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
-# no more is said of a long list than what is wrong with the first bad entry
-Many = Annotated[list[Entry], Field(fail_fast=True)]
 
 # Far beyond any arm, and near enough that no number overflows and no search takes hours.
 Length = Annotated[float, Field(ge=-1e6, le=1e6)]  # [mm]
@@ -67,7 +60,6 @@ Rate = Annotated[float, Field(ge=0, le=1e4)]  # [deg/mm]
 Twist = Annotated[float, Field(gt=0, le=1e4)]  # [deg/mm]
 Positive = Annotated[float, Field(gt=0, le=1e12)]
 NotNegative = Annotated[float, Field(ge=0, le=1e15)]
-Measured = Annotated[float, Field(ge=-1e15, le=1e15)]
 
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]
 PlaceMm = Annotated[list[Length], Field(min_length=3, max_length=3)]
@@ -81,6 +73,9 @@ Branch = Annotated[int, Field(ge=0, le=7)]
 
 
 # --- robot and tool ---------------------------------------------------------------------------------------------------
+
+
+SOURCES = "a mapping of text to text: where the numbers come from"
 
 
 class GeometryForm(Form):
@@ -112,8 +107,8 @@ class RobotForm(Form):
     """The numbers of a robot."""
 
     name: Name = Field(description="text: how jobs call the robot")
-    manufacturer: Text = Field(default="", description="text: who makes it")
-    model: Text = Field(default="", description="text: the maker's name of it")
+    manufacturer: Words = Field(default="", description="text: who makes it")
+    model: Words = Field(default="", description="text: the maker's name of it")
     geometry_mm: GeometryForm = Field(description="a mapping of the seven lengths a1, a2, b, c1, c2, c3, c4 [mm]")
     joints: JointsForm = Field(
         description="a mapping of names, sign, offset_deg, lower_deg, upper_deg and speed_deg_s, six entries each"
@@ -124,9 +119,11 @@ class RobotFile(RobotForm):
     """A robot file, YAML."""
 
     format: Literal["zerorev.robot/1"] = Field(description="zerorev.robot/1")
-    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
-    second_sources: Many[Text] = Field(default=[], description="a list of text: what a second source says")
-    caveats: Many[Text] = Field(default=[], description="a list of text: what to know before trusting the numbers")
+    sources: dict[Words, Words] = Field(
+        default={}, description="a mapping of text to text: where the numbers come from"
+    )
+    second_sources: Many[Words] = Field(default=[], description="a list of text: what a second source says")
+    caveats: Many[Words] = Field(default=[], description="a list of text: what to know before trusting the numbers")
 
 
 class ToolForm(Form):
@@ -144,7 +141,9 @@ class ToolFile(ToolForm):
 
     format: Literal["zerorev.tool/1"] = Field(description="zerorev.tool/1")
     name: Name = Field(description="text: how jobs call the tool")
-    sources: dict[Text, Text] = Field(default={}, description="a mapping of text to text: where the numbers come from")
+    sources: dict[Words, Words] = Field(
+        default={}, description="a mapping of text to text: where the numbers come from"
+    )
 
 
 # --- job --------------------------------------------------------------------------------------------------------------
@@ -159,13 +158,9 @@ class FrameForm(Form):
     )
 
 
-if TYPE_CHECKING:
-
-    class SettingsForm(Form):
-        """How to plan and how to run the motion."""
-
-else:
-    SettingsForm = form_of(Settings, "SettingsForm", "How to plan and how to run the motion.")
+@keys_of(Settings)
+class SettingsForm(Form):
+    """How to plan and how to run the motion."""
 
 
 class HoleForm(Form):

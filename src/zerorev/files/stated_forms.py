@@ -5,21 +5,37 @@ Millimetres and degrees end and begin here: `noun_from` reads, `data_of` writes.
 
 from __future__ import annotations
 
-import math
+import json
+from collections.abc import Callable
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, create_model
+import numpy as np
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, create_model
 
 from zerorev.errors import InputError
 from zerorev.files.units import plain
 from zerorev.model.measures import criteria
-from zerorev.model.stated import UNSET, Choice, Measured, Number, Six, Stated, Switch, Weighed, Whole, stated
+from zerorev.model.stated import UNSET, Choice, Number, Six, Stated, Switch, Weighed, Whole, stated
+from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
+from zerorev.visible import one_line
 
-__all__ = ["Form", "data_of", "default_of", "form_of", "kind", "noun_from"]
+__all__ = [
+    "Counted", "Form", "Many", "Measured", "SixCounted", "SixMeasured", "Words", "agree", "data_of", "default_of",
+    "keys_of", "kind", "noun_from",
+]  # fmt: skip
 
 N = TypeVar("N")
+F = TypeVar("F", bound="Form")
+Entry = TypeVar("Entry")
 
-MOST_WEIGHT = 1e15
+# no more is said of a long list than what is wrong with the first bad entry
+Many = Annotated[list[Entry], Field(fail_fast=True)]
+Words = Annotated[str, Field(max_length=10_000), AfterValidator(one_line)]
+Measured = Annotated[float, Field(ge=-1e15, le=1e15)]
+SixMeasured = Annotated[list[Measured | None], Field(min_length=6, max_length=6)]
+Counted = Annotated[int, Field(ge=0, le=10**9)]
+SixCounted = Annotated[list[Counted], Field(min_length=6, max_length=6)]
+Weight = Annotated[float, Field(ge=0, le=1e15)]
 
 
 class Form(BaseModel):
@@ -35,39 +51,49 @@ def kind(value: object) -> str | None:
     return tags.get(type(value))
 
 
-def form_of(noun: type, name: str, means: str) -> type[Form]:
-    """The form of a noun's stated attributes in a file.
+def keys_of(noun: type, *, needed: bool = False) -> Callable[[type[F]], type[F]]:
+    """Gives a form, after its own keys, one for each stated attribute of a noun.
 
     Args:
         noun: a dataclass.
-        name: of the form, in the published schema.
-        means: what is in it, one sentence.
+        needed: whether a file has to have all of them, whatever the defaults of the noun, but those added later.
     """
-    fields: dict[str, Any] = {}
-    nests: dict[str, list[Stated]] = {}
-    for each in stated(noun):
-        if isinstance(each, Weighed):
-            word = next(one for one in stated(noun) if one.name == each.instead_of)
-            fields[word.path[0]] = _word_or_weights(word, each)
-        elif each.nest is not None:
-            nests.setdefault(each.nest.key, []).append(each)
-            fields[each.nest.key] = _nested(nests[each.nest.key])
-        else:
-            fields[each.path[0]] = _field(each)
-    return _made(name, means, fields)
+
+    def with_keys(form: type[F]) -> type[F]:
+        keys: dict[str, Any] = {}
+        nests: dict[str, list[Stated]] = {}
+        for each in stated(noun):
+            if isinstance(each, Weighed):
+                word = _word_of(noun, each)
+                keys[word.path[0]] = _word_or_weights(word, each)
+            elif each.nest is not None:
+                nests.setdefault(each.nest.key, []).append(each)
+                keys[each.nest.key] = _nested(nests[each.nest.key])
+            else:
+                if isinstance(each, SixCounts) and each.total:
+                    keys[each.total] = (Counted, Field(description="a whole number: reversals of all joints"))
+                keys[each.path[0]] = _key(each, needed)
+        return _form(form.__name__, form.__doc__, keys, form, form.__module__)
+
+    return with_keys
 
 
-def _made(name: str, means: str, fields: dict[str, Any]) -> type[Form]:
-    return create_model(name, __base__=Form, __doc__=means, __module__=__name__, **fields)
+def _form(name: str, means: str | None, keys: dict[str, Any], base: type[F], module: str = __name__) -> type[F]:
+    return create_model(name, __base__=base, __doc__=means, __module__=module, **keys)
 
 
-def _field(each: Stated) -> tuple[Any, Any]:
-    """The type of a field and the rest that pydantic is told of it."""
+def _word_of(noun: type, weighed: Weighed) -> Stated:
+    """The word in the place of which a mapping of weights may stand."""
+    return next(each for each in stated(noun) if each.name == weighed.instead_of)
+
+
+def _key(each: Stated, needed: bool) -> tuple[Any, Any]:
+    """The type of a key and the rest that pydantic is told of it."""
     accepted = _accepted(each)
     default: dict[str, Any] = {}
-    if each.before is not UNSET or (isinstance(each, Measured) and each.added):
+    if each.added or each.before is not UNSET:
         default = {"default": None}
-    elif each.default is not UNSET:
+    elif each.default is not UNSET and not needed:
         default = {"default": default_of(each)}
     return (accepted | None if each.nullable else accepted), Field(description=each.described, **default)
 
@@ -75,21 +101,31 @@ def _field(each: Stated) -> tuple[Any, Any]:
 def _accepted(each: Stated) -> Any:
     """The type of what a file may have but for null."""
     match each:
+        case SixFigures():
+            return SixMeasured
         case Six():
             return Annotated[list[Annotated[float, _span(each)]], Field(min_length=6, max_length=6)]
         case Whole():
             return Annotated[int, _span(each)]
         case Number():
             return Annotated[float, _span(each)]
+        case Count():
+            return Counted
+        case SixCounts():
+            return SixCounted
         case Choice():
             return Literal[tuple(each.words)]
         case Switch():
             return bool
-    raise TypeError(f"{each.name}: no form of a {type(each).__name__}")
+        case Text():
+            return Words
+        case Texts():
+            return Many[Words]
+    raise TypeError(f"{each.name}: no key of a {type(each).__name__}")
 
 
 def _span(number: Number) -> Any:
-    most = number.unit.most if number.most is None else number.most
+    most = next(each for each in (number.to, number.most, number.unit.most) if each is not None)
     if number.above is not None:
         return Field(gt=number.above, le=most)
     return Field(ge=-most if number.least is None else number.least, le=most)
@@ -100,11 +136,11 @@ def _nested(inner: list[Stated]) -> tuple[Any, Any]:
     first = inner[0]
     assert first.nest is not None
     name = first.nest.key.split("_")[0].capitalize()
-    form = _made(f"{name}Form", first.nest.means, {each.path[-1]: _field(each) for each in inner})
-    words = (
-        f"a mapping of {' and '.join(each.path[-1] for each in inner)}, each{first.accepted.removeprefix('a number')}"
+    form = _form(f"{name}Form", first.nest.means, {each.path[-1]: _key(each, needed=False) for each in inner}, Form)
+    keys = " and ".join(each.path[-1] for each in inner)
+    return form, Field(
+        default=form(), description=f"a mapping of {keys}, each{first.accepted.removeprefix('a number')}"
     )
-    return form, Field(default=form(), description=words)
 
 
 def _word_or_weights(word: Stated, weighed: Weighed) -> tuple[Any, Any]:
@@ -112,41 +148,58 @@ def _word_or_weights(word: Stated, weighed: Weighed) -> tuple[Any, Any]:
     weights: dict[str, Any] = {}
     for each in criteria(weighed.of).values():
         needs = "; needs joint_stiffness_nm_per_rad" if each.needs_stiffness else ""
-        text = f"a number, 0 or more: weight of {each.weighs}{needs}"
-        weights[each.name] = (Annotated[float, Field(ge=0, le=MOST_WEIGHT)], Field(default=0.0, description=text))
+        weights[each.name] = (
+            Weight,
+            Field(default=0.0, description=f"a number, 0 or more: weight of {each.weighs}{needs}"),
+        )
     means = "What a motion is judged by beside its reversals: the weighted sum of these is to be least."
-    form = _made("WeightsForm", means, weights)
+    form = _form("WeightsForm", means, weights, Form)
     either: Any = Annotated[_accepted(word), Tag("<text>")] | Annotated[form, Tag("<mapping>")]
     words = f"{word.accepted}, or {weighed.accepted}{word.joined}{word.means}"
     return Annotated[either, Discriminator(kind)], Field(default=word.default, description=words)
 
 
-def noun_from(noun: type[N], form: Form, *, before: bool = False) -> N:
-    """The noun of a form that `form_of` made of it, or of one that has its keys.
+def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "") -> N:
+    """The noun of a form that has the keys of its stated attributes.
 
     Args:
         noun: a dataclass; attributes without a statement have to have a default.
         form: as it was read.
         before: whether a key that is missing means what it meant before it existed, as in a file of answers.
+        where: of the form, for messages.
 
     Raises:
-        InputError: numbers that the noun does not accept.
+        InputError: numbers that the noun does not accept, or that contradict each other.
     """
     values: dict[str, Any] = {}
     for each in stated(noun):
-        value: Any = form
         if isinstance(each, Weighed):
-            value = getattr(form, next(one for one in stated(noun) if one.name == each.instead_of).path[0])
+            value = getattr(form, _word_of(noun, each).path[0])
             if isinstance(value, Form):
                 values |= {each.name: _weights(value, each), each.instead_of: getattr(noun, each.instead_of)}
             continue
+        value = form
         for key in each.path:
             value = getattr(value, key)
         if value is None and each.before is not UNSET:
             values[each.name] = each.before if before else each.default
-        else:
-            values[each.name] = _inside(each, value)
+            continue
+        if isinstance(each, SixCounts) and each.total:
+            agree(f"{where}.{each.total}", getattr(form, each.total), sum(value))
+        values[each.name] = _inside(each, value)
     return noun(**values)
+
+
+def agree(name: str, stated: Any, found: Any, tolerance: float = 0.0) -> None:
+    """Refuse a field that is not what it has to be beside the others.
+
+    Raises:
+        InputError: it is not.
+    """
+    if stated == found or (isinstance(found, float) and isinstance(stated, float) and abs(stated - found) <= tolerance):
+        return
+    what = f"contradicts the fields beside it: stated {json.dumps(stated)}, found {json.dumps(found)}"
+    raise InputError(what, where=name, accepted="a plan file as zerorev wrote it")
 
 
 def _weights(form: Form, weighed: Weighed) -> tuple[tuple[str, float], ...]:
@@ -164,9 +217,11 @@ def data_of(noun: Any) -> dict[str, Any]:
     for each in stated(type(noun)):
         value = getattr(noun, each.name)
         if isinstance(each, Weighed):
-            word = next(one for one in stated(type(noun)) if one.name == each.instead_of)
+            word = _word_of(type(noun), each)
             data[word.path[0]] = dict(value) or data[word.path[0]]
             continue
+        if isinstance(each, SixCounts) and each.total:
+            data[each.total] = sum(value)
         place = data
         for key in each.path[:-1]:
             place = place.setdefault(key, {})
@@ -181,17 +236,24 @@ def default_of(each: Stated) -> Any:
 
 def _inside(each: Stated, value: Any) -> Any:
     """SI and radians of what a file holds."""
-    if value is None:
-        return math.nan if isinstance(each, Measured) else None
-    if isinstance(each, Six):
-        return tuple(float(each.unit.inside(one)) for one in value)
-    return float(each.unit.inside(value)) if isinstance(each, Number) and not isinstance(each, Whole) else value
+    match each:
+        case SixFigures() if value is not None:
+            return each.unit.inside(np.array(value, dtype=np.float64))
+        case Figure() if value is None:
+            return each.null
+        case _ if value is None:
+            return None
+        case Six():
+            return tuple(float(each.unit.inside(one)) for one in value)
+        case Whole():
+            return value
+        case Number():
+            return float(each.unit.inside(value))
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _outside(each: Stated, value: Any) -> Any:
     """What a file holds of a value in SI and radians."""
-    if isinstance(each, Six) and value is not None:
-        return [each.unit.outside(float(one)) for one in value]
-    if isinstance(each, Number) and not isinstance(each, Whole) and value is not None:
-        return each.unit.outside(float(value))
-    return value
+    if value is None or isinstance(each, Whole) or not isinstance(each, Number):
+        return value
+    return each.unit.outside(np.asarray(value, dtype=np.float64))

@@ -10,7 +10,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
-from zerorev.model.stated import Measured, attributes, stated
+from zerorev.model.stated import attributes, stated
+from zerorev.model.stated_figures import Figure
 from zerorev.model.units import DEG, DEG_PER_MM, RPM, UM_PER_N
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ V = TypeVar("V", float, "Array")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Criterion(Measured):
+class Criterion(Figure):
     """A figure of a motion that can be weighed: a cost of about 0 for the best and about 1 for a poor motion.
 
     Attributes:
@@ -34,6 +35,7 @@ class Criterion(Measured):
         absolute: how far the figure of a file may be from the one that the check computes, in the unit outside.
     """
 
+    null: object = math.nan
     weighs: str
     scale: float = 1.0
     more_is_better: bool = False

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -14,7 +15,10 @@ from zerorev.model.job import Settings
 from zerorev.model.measures import Measures, V
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.stated import Choice, Switch, Whole, attributes
+from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
 from zerorev.model.tool import Tool
+from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT
 
 __all__ = [
     "UNFINISHED",
@@ -55,32 +59,28 @@ def named_holes(ids: Iterable[str]) -> str:
 class Finding:
     """Something a user should know about a plan or one of its holes.
 
-    Attributes:
-        level: `error` (no program can be made of it), `warning` (look at it first), `info`.
-        kind: a fixed word for machines, e.g. `unreachable`, `limit`, `reversal`, `threshold`.
-        message: one sentence for people.
-        hole: the hole's id, or None where the whole plan is meant.
+    Of an error no program can be made; a warning asks to look at it first.
     """
 
-    level: Level
-    kind: str
-    message: str
-    hole: str | None = None
+    level: Annotated[
+        Level,
+        Choice(
+            "",
+            words={"error": "", "warning": "", "info": ""},
+        ),
+    ]
+    kind: Annotated[str, Text("a fixed word for machines")]  # e.g. `unreachable`, `limit`, `reversal`, `threshold`
+    message: Annotated[str, Text("one sentence for people")]
+    hole: Annotated[str | None, Text("the hole's id", none="the whole plan is meant")] = None
 
 
 @dataclass(frozen=True)
 class Event:
-    """A reversal: where one joint changes direction.
+    """A reversal: where one joint changes direction, within a leg or at the target, the corner."""
 
-    Attributes:
-        joint: 1 to 6.
-        leg: `plunge` or `retract` where it happens within a leg, `target` where it happens at the corner.
-        standoff: where [m].
-    """
-
-    joint: int
-    leg: LegName
-    standoff: float
+    joint: Annotated[int, Whole(least=1, to=6)]
+    leg: Annotated[LegName, Choice(words={"plunge": "", "target": "at the corner", "retract": ""})]
+    standoff: Annotated[float, Figure("where", MM)]
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,8 @@ class Motion:
 class Baseline:
     """The same hole drilled with constant spin psi = psi_start on the plan's branch."""
 
-    reversals_per_joint: tuple[int, ...]
-    travel: float  # [rad]
+    reversals_per_joint: Annotated[tuple[int, ...], SixCounts(total="reversals")]
+    travel: Annotated[float, Figure("sum over the joints of the angle moved", DEG, least=0)]
 
     @property
     def reversals(self) -> int:
@@ -142,87 +142,90 @@ class Verification:
     """What the independent check looked at, and what it found.
 
     Attributes:
-        passed: whether the plan's claims hold.
-        samples: points looked at on the two legs.
-        blend_samples: points looked at on the blended corner.
-        reversals_per_joint: as counted by the check, shape (6,).
-        max_position_error: greatest distance between the tip by forward kinematics and the drill axis' point [m].
-        max_rotation_error: greatest angle between the tool by forward kinematics and the one asked for [rad].
-        max_joint_step: greatest joint step between neighbouring samples [rad].
-        min_limit_distance: least distance to a joint limit [rad].
-        failures: one sentence a failed check; empty where passed.
         subject: fingerprint of what was examined (`zerorev.verify.check.subject`); None where that is not known, as of
             what a plan file says.
     """
 
-    passed: bool
-    samples: int
-    blend_samples: int
-    reversals_per_joint: tuple[int, ...]
-    max_position_error: float
-    max_rotation_error: float
-    max_joint_step: float
-    min_limit_distance: float
-    failures: tuple[str, ...] = ()
+    passed: Annotated[bool, Switch("whether the plan's claims hold")]
+    samples: Annotated[int, Count("points looked at on the two legs")]
+    blend_samples: Annotated[int, Count("points looked at on the blended corner")]
+    reversals_per_joint: Annotated[tuple[int, ...], SixCounts("as counted by the check")]
+    max_position_error: Annotated[float, Figure("the tip off its path", MM, null=math.nan, none="undefined")]
+    max_rotation_error: Annotated[float, Figure("the tool off its pose", DEG, null=math.nan, none="undefined")]
+    max_joint_step: Annotated[
+        float, Figure("greatest step between neighbouring samples", DEG, null=math.nan, none="undefined")
+    ]
+    min_limit_distance: Annotated[
+        float, Figure("least distance to a joint limit", DEG, null=math.nan, none="undefined")
+    ]
+    failures: Annotated[tuple[str, ...], Texts("one sentence a failed check")] = ()
     subject: str | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Certificate:
-    """What is proven of the continuous motion, not of samples of it (issue 3: a certificate).
+    """What is proven of the continuous motion, not of samples of it.
 
-    Attributes:
-        verdict: `certified` (no joint reverses, no limit is passed, every pose is in reach and clear of singularities,
-            also where breakpoints are blended, and the claims hold), `refuted` (something is proven to be wrong), or
-            `undecided`.
-        pieces: into how many the motion was cut.
-        min_rate: no |d theta / d path| on the two legs is less [rad/m], shape (6,); NaN where nothing is proven.
-        blend_min_rate: the same in the blends, counted by the path that a blend replaces; NaN without one.
-        limit_distance: no distance to a joint limit is less [rad], shape (6,); NaN where nothing is proven.
-        reasons: what is refuted or undecided, one sentence each; empty where certified.
+    Certified: no joint reverses, no limit is passed, every pose is in reach and clear of singularities, also where
+    breakpoints are blended, and the claims hold. The arrays have shape (6,).
     """
 
-    verdict: Literal["certified", "refuted", "undecided"]
-    pieces: int
-    min_rate: Array
-    blend_min_rate: Array
-    limit_distance: Array
-    reasons: tuple[str, ...] = ()
+    verdict: Annotated[
+        Literal["certified", "refuted", "undecided"],
+        Choice(words={"certified": "proven", "refuted": "proven to be wrong", "undecided": ""}),
+    ]
+    pieces: Annotated[int, Count("pieces into which the motion was cut")]
+    min_rate: Annotated[Array, SixFigures("on the legs no joint moves slower", DEG_PER_MM)]
+    # counted by the path that a blend replaces
+    blend_min_rate: Annotated[Array, SixFigures("in the blends no joint moves slower; null without one", DEG_PER_MM)]
+    limit_distance: Annotated[Array, SixFigures("no joint comes nearer to a limit", DEG)]
+    reasons: Annotated[tuple[str, ...], Texts("what is refuted or undecided, one sentence each")] = ()
 
 
 @dataclass(frozen=True)
 class Within:
-    """How far a part may stand off where it was modelled: a bound of the placement error.
+    """How far a part may stand off where it was modelled: a bound of the placement error."""
 
-    The origin of the part frame is off by at most so much along each of its axes, and the part is turned about that
-    origin, about any axis, by at most so much.
-
-    Attributes:
-        position: along each axis of the part frame [m].
-        rotation: about any axis [rad].
-    """
-
-    position: float
-    rotation: float
+    position: Annotated[float, Figure("its origin, along each axis of the part frame", MM, key="mm", least=0)]
+    rotation: Annotated[float, Figure("turned about that origin, about any axis", DEG, key="deg", least=0)]
 
 
 @dataclass(frozen=True)
 class Optimality:
     """How much better a motion of straight legs could be, by a global search that bounds (theory §3).
 
-    Attributes:
-        reversals_at_least: weighted count; no motion has fewer.
-        travel_at_least: no motion that keeps the motion threshold with the planned reversals travels less [rad]; None
-            where the planned one does not keep it, or where another criterion decides.
-        gap: what the planned motion travels above that, as a share of its own travel; None likewise.
-        proven: whether nothing was left undecided: without a motion, that there is none; of a motion below the motion
-            threshold, that no motion with so few reversals keeps it; otherwise that the gap is at most 0.1 %.
+    The bound of the travel is None where the planned motion does not keep the motion threshold, or where another
+    criterion decides.
     """
 
-    reversals_at_least: float
-    travel_at_least: float | None
-    gap: float | None
-    proven: bool
+    reversals_at_least: Annotated[float, Figure("no motion has fewer reversals (weighted)", least=0)]
+    travel_at_least: Annotated[
+        float | None,
+        Figure(
+            "none with so few reversals that keeps the threshold travels less",
+            DEG,
+            least=0,
+            null=None,
+            none="no bound",
+        ),
+    ]
+    gap: Annotated[
+        float | None,
+        Figure(
+            "what the planned motion travels above that, of its own travel",
+            PERCENT,
+            least=0,
+            null=None,
+            none="no bound",
+        ),
+    ]
+    proven: Annotated[
+        bool,
+        Switch(
+            "whether nothing was left undecided (without a motion: that there is none; below the motion threshold: "
+            "that no motion with so few reversals keeps it; else: a gap of at most 0.1 %)"
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -294,3 +297,7 @@ class Plan:
     def all_findings(self) -> tuple[Finding, ...]:
         """The plan's findings, then each hole's."""
         return self.findings + tuple(finding for hole in self.holes for finding in hole.findings)
+
+
+for _noun in (Finding, Event, Verification, Baseline, Certificate, Within, Optimality):
+    _noun.__doc__ = f"{_noun.__doc__}\n{attributes(_noun)}"

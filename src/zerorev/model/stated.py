@@ -10,27 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, ClassVar, TypeVar, get_type_hints
 
 from zerorev.errors import InputError
 from zerorev.model.units import ONE, Unit
 
 __all__ = [
-    "UNSET",
-    "Choice",
-    "Measured",
-    "Nest",
-    "Number",
-    "Six",
-    "Stated",
-    "Switch",
-    "Weighed",
-    "Whole",
-    "attributes",
-    "check",
-    "scaled",
+    "UNSET", "Choice", "Nest", "Number", "Six", "Stated", "Switch", "Weighed", "Whole", "attributes", "check", "scaled",
     "stated",
-]
+]  # fmt: skip
 
 N = TypeVar("N")
 
@@ -61,11 +49,12 @@ class Stated:
         key: in a file, where it is not the attribute's name with the unit's suffix.
         nest: below which key of the file it stands.
         none: what null means; empty where null is not accepted.
+        added: whether files of answers of before it existed do not have it; they claim nothing then.
         before: what a file of answers without the key means, where that is not the default; it was made before the
             key existed.
         note: what the table says besides.
         group: legend of its part of the app's form; empty: it is not in the form.
-        label: in the form; else its name.
+        label: in the form; else what it means, or its name.
         empty: what an empty field of the form means; else what null means.
         name: of the attribute, filled in by `stated`.
         default: of the attribute, filled in by `stated`.
@@ -77,6 +66,7 @@ class Stated:
     key: str = ""
     nest: Nest | None = None
     none: str = ""
+    added: bool = False
     before: object = UNSET
     note: str = ""
     group: str = ""
@@ -85,7 +75,9 @@ class Stated:
     name: str = ""
     default: object = UNSET
 
-    joined = ": "  # what is accepted and what it means
+    what: ClassVar[str]  # a file may have
+    joined: ClassVar[str] = ": "  # to what it means
+    or_null: ClassVar[str] = "; or null: "
 
     @property
     def path(self) -> tuple[str, ...]:
@@ -96,12 +88,17 @@ class Stated:
     @property
     def nullable(self) -> bool:
         """Whether a file may have null."""
-        return bool(self.none) or self.before is not UNSET
+        return bool(self.none) or self.added or self.before is not UNSET
+
+    @property
+    def span(self) -> str:
+        """The range that a file's number has to be in, in words."""
+        return ""
 
     @property
     def accepted(self) -> str:
         """What a file may have, in words."""
-        raise NotImplementedError
+        return f"{self.what}{self.span}{f' [{self.unit.name}]' if self.unit.name else ''}"
 
     @property
     def described(self) -> str:
@@ -110,9 +107,9 @@ class Stated:
         if self.before is not UNSET:
             none = f"{self.default} in a job, and {self.before} in a file of answers from before this key existed"
         means = f"{self.joined}{self.means}" if self.means else ""
-        return f"{self.accepted}{means}{f'; or null: {none}' if none else ''}"
+        return f"{self.accepted}{means}{f'{self.or_null}{none}' if none else ''}"
 
-    def admits(self, value: Any, noun: object) -> str:
+    def refused(self, value: Any, noun: object) -> str:
         """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
         return ""
 
@@ -125,64 +122,42 @@ class Number(Stated):
         least: what it has to be at least, in the unit outside.
         above: what it has to be above.
         most: the largest that files accept; else the unit's.
+        to: the largest, where it is worth a word.
         up_to: the attribute that it may not exceed.
     """
 
     least: float | None = None
     above: float | None = None
     most: float | None = None
+    to: float | None = None
     up_to: str = ""
 
     what = "a number"
 
     @property
-    def accepted(self) -> str:
-        """What a file may have, in words."""
+    def span(self) -> str:
+        """The range that a file's number has to be in, in words."""
         if self.up_to:
-            span = f" from {self.least:g} to {self.up_to}_{self.unit.suffix}"
-        elif self.above is not None:
-            span = f" above {self.above:g}"
-        else:
-            span = "" if self.least is None else f", {self.least:g} or more"
-        return f"{self.what}{span}{f' [{self.unit.name}]' if self.unit.name else ''}"
+            return f" from {self.least:g} to {self.up_to}_{self.unit.suffix}"
+        if self.to is not None:
+            return f" from {self.least:g} to {self.to:g}"
+        if self.above is not None:
+            return f" above {self.above:g}"
+        return "" if self.least is None else f", {self.least:g} or more"
 
-    def admits(self, value: Any, noun: object) -> str:
+    def refused(self, value: Any, noun: object) -> str:
         """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
         if (value is None and self.none) or (value is not None and self._in_range(value, noun)):
             return ""
-        if self.up_to:
-            span = f"{self.least:g} to {self.up_to}"
-        else:
-            span = f"{self.least:g} or more" if self.above is None else f"above {self.above:g}"
+        span = f"{self.least:g} to {self.up_to}" if self.up_to else self.span.lstrip(", ")
         return f"{span}, or none: {self.none}" if self.none else span
 
     def _in_range(self, value: float, noun: object) -> bool:
         # for NaN, of which no comparison is true, none of these is
-        low = self.above is None or value > self.unit.inside(self.above)
-        low = low and (self.least is None or value >= self.unit.inside(self.least))
-        return low and (not self.up_to or value <= getattr(noun, self.up_to))
-
-
-@dataclass(frozen=True, kw_only=True)
-class Measured(Number):
-    """One number that was computed; NaN, null in a file, where it is undefined.
-
-    Attributes:
-        added: whether older files of answers do not have it; they claim nothing then.
-    """
-
-    most: float | None = 1e15
-    added: bool = False
-
-    @property
-    def nullable(self) -> bool:
-        """Whether a file may have null."""
-        return True
-
-    @property
-    def described(self) -> str:
-        """What is accepted and what it means, in one line."""
-        return f"{self.accepted}: {self.means}{f'; null: {self.none}' if self.none else ''}"
+        fits = self.above is None or value > self.unit.inside(self.above)
+        fits = fits and (self.least is None or value >= self.unit.inside(self.least))
+        fits = fits and (self.to is None or value <= self.unit.inside(self.to))
+        return fits and (not self.up_to or value <= getattr(noun, self.up_to))
 
 
 class Whole(Number):
@@ -196,13 +171,12 @@ class Six(Number):
 
     what = "six numbers"
 
-    def admits(self, value: Any, noun: object) -> str:
+    def refused(self, value: Any, noun: object) -> str:
         """What would be accepted in place of the value of a noun [SI]; empty where it is in range."""
         if value is None and self.none:
             return ""
-        if len(value) == 6 and all(abs(each) < math.inf and self._in_range(each, noun) for each in value):
-            return ""
-        return self.what if self.above is None else f"{self.what} above {self.above:g}"
+        good = len(value) == 6 and all(abs(each) < math.inf and self._in_range(each, noun) for each in value)
+        return "" if good else f"{self.what}{self.span}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -220,7 +194,7 @@ class Choice(Stated):
     @property
     def accepted(self) -> str:
         """What a file may have, in words."""
-        *others, last = (f"{word} ({means})" for word, means in self.words.items())
+        *others, last = (f"{word} ({means})" if means else word for word, means in self.words.items())
         return f"{', '.join(others)} or {last}"
 
 
@@ -236,10 +210,7 @@ class Switch(Stated):
     off: str = "no"
     on: str = "yes"
 
-    @property
-    def accepted(self) -> str:
-        """What a file may have, in words."""
-        return "true or false"
+    what = "true or false"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -254,10 +225,10 @@ class Weighed(Stated):
     instead_of: str
     of: type
 
-    @property
-    def accepted(self) -> str:
-        """What a file may have, in words."""
-        return "a mapping of criteria to weights"
+    what = "a mapping of criteria to weights"
+
+
+_KNOWN: dict[type[Any], tuple[Stated, ...]] = {}
 
 
 def stated(noun: type[Any]) -> tuple[Stated, ...]:
@@ -271,16 +242,12 @@ def stated(noun: type[Any]) -> tuple[Stated, ...]:
     return _KNOWN[noun]
 
 
-_KNOWN: dict[type[Any], tuple[Stated, ...]] = {}
-
-
 def _stated(noun: type[Any]) -> Iterator[Stated]:
     hints = get_type_hints(noun, include_extras=True)
     for field in fields(noun):
         for said in getattr(hints[field.name], "__metadata__", ()):
             if isinstance(said, Stated):
-                default = UNSET if field.default is MISSING else field.default
-                yield replace(said, name=field.name, default=default)
+                yield replace(said, name=field.name, default=UNSET if field.default is MISSING else field.default)
 
 
 def check(noun: object) -> None:
@@ -290,7 +257,7 @@ def check(noun: object) -> None:
         InputError: with the attribute's name, and what would be accepted.
     """
     for each in stated(type(noun)):
-        accepted = each.admits(getattr(noun, each.name), noun)
+        accepted = each.refused(getattr(noun, each.name), noun)
         if accepted:
             raise InputError("out of range", where=each.name, accepted=accepted)
 
@@ -299,20 +266,14 @@ def scaled(noun: N, factor: float) -> N:
     """The noun at another size: lengths times the factor, rates per length divided by it (theory §6).
 
     Args:
-        noun: a dataclass with stated attributes.
+        noun: a dataclass with stated numbers.
         factor: above 0; with a power of two no digit changes.
     """
     changed: dict[str, Any] = {}
     for each in stated(type(noun)):
-        value = getattr(noun, each.name)
-        if each.unit.length == 0 or value is None:
-            continue
-        power = factor ** abs(each.unit.length)
-        grown = [
-            one * power if each.unit.length > 0 else one / power
-            for one in (value if isinstance(each, Six) else [value])
-        ]
-        changed[each.name] = tuple(grown) if isinstance(each, Six) else grown[0]
+        value, power = getattr(noun, each.name), factor ** abs(each.unit.length)
+        if each.unit.length != 0 and value is not None:
+            changed[each.name] = value * power if each.unit.length > 0 else value / power
     return replace(noun, **changed)  # type: ignore[type-var]
 
 
