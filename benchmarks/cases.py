@@ -11,6 +11,7 @@ import numpy as np
 
 import zerorev as zr
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 from zerorev.search.exact import search
 from zerorev.verify.certificate.certify import certify_hole
 
@@ -84,7 +85,7 @@ def mirrored(case: Case) -> Case:
 
 def exact(case: Case) -> Answer | None:
     """The exact straight-leg optimum, no motion threshold, spin periodic."""
-    found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
+    found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
     return None if found is None else Answer(found.profile, found.branch)
 
 

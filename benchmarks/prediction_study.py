@@ -24,13 +24,15 @@ from benchmarks.cases import NO_THRESHOLD, Case, random_place
 from zerorev.files.output import write_bytes, write_text
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.arm import flip_sign, twist_field
+from zerorev.kernels.layout import LONGEST_TWIST
 from zerorev.model._arrays import Array
-from zerorev.motion.kinematics import inverse, tcp_pose, twist_plane
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.report.figures import style
 from zerorev.search.deepest import deepest_stroke
 from zerorev.search.line import golden
 from zerorev.search.prediction import earlier_root, first_order_root, predict, second_order_root
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
+from zerorev.search.straight import LEAST_RATE, target_spins
 
 ROOT = Path(__file__).parents[1]
 SHARES = (0.5, 0.9)  # of the deepest stroke, at which the least twist is looked for
@@ -96,7 +98,7 @@ def bracket_twist(arm, plane, branch, psi, at_target, limits, depth):  # type: i
 def least_twist(case: Case, depth: float) -> float:
     """Least |psi_start - psi_end| [rad] of two straight legs without a reversal, over all branches and spins."""
     robot, tool, hole = case.robot, case.tool, case.hole
-    limits, plane, spins = robot.limits, twist_plane(robot, tool, hole), target_spins(None, SPINS)
+    limits, plane, spins = robot.limits, Drilling(robot, tool, hole).plane, target_spins(None, SPINS)
 
     def twist(branch: int, psi: float) -> float:
         joints = inverse(robot, tcp_pose(hole, 0.0, psi) @ np.linalg.inv(tool.T_flange_tcp))[branch]
@@ -121,7 +123,9 @@ def studied(seed: int) -> dict[str, Any]:
     """One random hole: what is foretold and what is so; lengths in m, angles in rad."""
     case = random_place(seed)
     hole = case.hole
-    foretold = {name: predict(case.robot, case.tool, hole, NO_THRESHOLD, root=root) for name, root in ROOTS.items()}
+    foretold = {
+        name: predict(Drilling(case.robot, case.tool, hole), NO_THRESHOLD, root=root) for name, root in ROOTS.items()
+    }
     cheapest = foretold[DEEPEST_BY].cheapest
     deepest = deepest_stroke(case.robot, case.tool, hole, NO_THRESHOLD).depth
     return {
@@ -136,7 +140,9 @@ def studied(seed: int) -> dict[str, Any]:
 def studied_twist(case: Case, depth: float) -> dict[str, Any]:
     """The least twist at one depth."""
     hole = replace(case.hole, depth=depth)
-    foretold = {name: predict(case.robot, case.tool, hole, NO_THRESHOLD, root=root) for name, root in ROOTS.items()}
+    foretold = {
+        name: predict(Drilling(case.robot, case.tool, hole), NO_THRESHOLD, root=root) for name, root in ROOTS.items()
+    }
     cheapest = foretold[DEEPEST_BY].cheapest
     return {
         "depth": depth,

@@ -13,6 +13,7 @@ from zerorev.model._arrays import Array, rotation_rpy, transform
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 from zerorev.search.problem import Problem
 
 __all__ = ["HOSTILE", "hostile_problem", "random_problem"]
@@ -38,7 +39,7 @@ def random_problem(seed: int) -> Problem:
     if seed // 2 % 2:
         deepest = zr.deepest_stroke(robot, tool, hole, zr.Settings()).depth
         hole = replace(hole, depth=deepest * float(rng.uniform(*NEAR)) if deepest > 0 else depth)
-    return Problem(robot, tool, hole, zr.Settings())
+    return Problem(Drilling(robot, tool, hole), zr.Settings())
 
 
 def hostile_problem(seed: int) -> Problem:
@@ -61,7 +62,7 @@ def hostile_problem(seed: int) -> Problem:
         robot = replace(robot, limits=replace(limits, lower=lower, upper=upper))
     else:
         depth = robot.size * float(np.exp(rng.uniform(np.log(0.5e-3), np.log(300e-3))))
-    return Problem(robot, tool, _hole(f"{kind} {seed}", robot, tool, joints, depth), zr.Settings())
+    return Problem(Drilling(robot, tool, _hole(f"{kind} {seed}", robot, tool, joints, depth)), zr.Settings())
 
 
 def _robot_and_tool(number: int, rng: np.random.Generator) -> tuple[Robot, Tool]:

@@ -18,6 +18,7 @@ import numpy as np
 
 import zerorev as zr
 from benchmarks.problems import hostile_problem, random_problem
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.proof import prove
 from zerorev.search.exact import search
 from zerorev.search.optimum import deepest_as_drilled
@@ -55,7 +56,7 @@ class Bounded(NamedTuple):
 def proven(make: Callable[[int], Any], seed: int) -> Proven:
     """Prove one hole within each budget, the smaller ones first; what is proven already is not proven again."""
     problem = make(seed)
-    first = search(problem.robot, problem.tool, problem.hole, problem.settings)
+    first = search(Drilling(problem.robot, problem.tool, problem.hole), problem.settings)
     seconds, rows, boxes, best = [], [], 0, first
     for budget in BUDGETS:
         if not rows or not rows[-1].proven:
@@ -86,7 +87,7 @@ def bounded(seed: int) -> Bounded:
     robot, tool, hole, settings = problem.robot, problem.tool, problem.hole, problem.settings
     known = zr.deepest_stroke(robot, tool, hole, settings).depth
     began = time.process_time()
-    found = deepest_as_drilled(robot, tool, hole, replace(settings, proof_boxes=DEPTH_BOXES))
+    found = deepest_as_drilled(Drilling(robot, tool, hole), replace(settings, proof_boxes=DEPTH_BOXES))
     seconds = time.process_time() - began
     above = found.at_most / found.depth - 1 if found.at_most is not None and found.depth > 0 else None
     none = found.at_most is not None and found.depth == 0
@@ -96,7 +97,7 @@ def bounded(seed: int) -> Bounded:
 def alone(seed: int) -> tuple[bool, float | None]:
     """Whether a bound that was driven up without a motion passes what another search has; the share it reaches."""
     problem = random_problem(seed)
-    known = search(problem.robot, problem.tool, problem.hole, problem.settings)
+    known = search(Drilling(problem.robot, problem.tool, problem.hole), problem.settings)
     optimality = prove(problem, None, ALONE_BOXES).optimality
     if known is None:
         return True, None

@@ -16,6 +16,8 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.critical import kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.joint_path import joints_along, sample_distances
 
@@ -26,7 +28,7 @@ NO_LIMITS = JointLimits(np.full(6, -20.0), np.full(6, 20.0), np.ones(6))
 
 
 @dataclass(frozen=True)
-class Drilling:
+class Drilled:
     """A random hole in front of a random robot, drilled on a random branch with random spins."""
 
     robot: Robot
@@ -63,7 +65,7 @@ def drillings(draw, names=tuple(ROBOTS), **shape):
     direction = np.array([1.0, draw(st.floats(-0.8, 0.8)), draw(st.floats(-0.8, 0.8))])
     depth = draw(st.floats(0.01, 0.05))
     hole = Hole("random", target, direction, depth)
-    return Drilling(replace(robot, limits=NO_LIMITS), hole, draw(profiles(depth, **shape)), draw(st.integers(0, 7)))
+    return Drilled(replace(robot, limits=NO_LIMITS), hole, draw(profiles(depth, **shape)), draw(st.integers(0, 7)))
 
 
 def running(drilling):
@@ -101,7 +103,7 @@ def test_mirrored_about_the_xz_plane_the_same_joints_turn(drilling):
     np.testing.assert_allclose(mirrored.min_rate, score.min_rate, rtol=1e-6, atol=1e-8)
 
     def joints(hole, profile):
-        return joints_along(drilling.robot, TOOL, hole, drilling.branch, profile.standoff, profile.psi)
+        return joints_along(Drilling(drilling.robot, TOOL, hole), drilling.branch, profile.standoff, profile.psi)
 
     there, here = joints(hole, profile), joints(drilling.hole, drilling.profile)
     turned = there - here * [-1, 1, 1, -1, 1, -1]
@@ -136,7 +138,7 @@ def test_a_joint_reverses_at_the_target_unless_its_critical_rate_is_bracketed(dr
     """Theory §2: the slopes of the two legs lie on either side of kappa."""
     score = running(drilling)
     psi = drilling.profile.psi[drilling.profile.corner]
-    kappa = kinematics.critical_rates(drilling.robot, TOOL, drilling.hole, 0.0, psi)[drilling.branch]
+    kappa = kappa_of(*joint_rates(Drilling(drilling.robot, TOOL, drilling.hole), 0.0, psi))[drilling.branch]
     low, high = sorted(drilling.profile.twist_rate)
     assume(np.abs(kappa[:, None] - [low, high]).min() > 1e-6 * (1 + np.abs(kappa).max()))
     at_target = {event.joint for event in score.events if event.leg == "target"}
@@ -148,7 +150,7 @@ def test_with_held_spin_every_joint_that_moves_reverses_at_the_target(drilling):
     """Theory §2: nothing lies between two equal slopes."""
     held = replace(drilling, profile=Profile.straight(drilling.hole.depth, *drilling.profile.psi[:1].repeat(3)))
     score = running(held)
-    theta_s, _ = kinematics.joint_rates(held.robot, TOOL, held.hole, 0.0, held.profile.psi[0])
+    theta_s, _ = joint_rates(Drilling(held.robot, TOOL, held.hole), 0.0, held.profile.psi[0])
     moving = {i + 1 for i in range(6) if abs(theta_s[held.branch, i]) > 1e-6}
     assert {event.joint for event in score.events if event.leg == "target"} >= moving
 
@@ -158,7 +160,7 @@ def test_with_held_spin_every_joint_that_moves_reverses_at_the_target(drilling):
 def test_reversals_are_those_of_a_naive_counter(drilling):
     score = running(drilling)
     points = drilling.profile.at(sample_distances(drilling.profile, 20_000))
-    joints = joints_along(drilling.robot, TOOL, drilling.hole, drilling.branch, *points)
+    joints = joints_along(Drilling(drilling.robot, TOOL, drilling.hole), drilling.branch, *points)
     moved = np.abs(np.diff(joints, axis=0)).sum(axis=0)
     assume(((moved > 1e-4) | (moved < 1e-12)).all())  # of less than that, spread over the path, a counter sees nothing
     assert score.reversals_per_joint == tuple(map(len, twin.reversals(joints)))
@@ -191,7 +193,7 @@ def test_any_tool_has_the_rates_of_the_twin(name, joints, lengths):
     solutions = kinematics.inverse(robot, kinematics.forward(robot, joints))
     branch = int(np.nanargmin(np.abs((solutions - joints + np.pi) % (2 * np.pi) - np.pi).max(axis=1)))
     for ours, theirs in zip(
-        kinematics.joint_rates(robot, tool, hole, 0.0, 0.0),
+        joint_rates(Drilling(robot, tool, hole), 0.0, 0.0),
         twin.rates(robot, tool, hole.direction, joints),
         strict=True,
     ):

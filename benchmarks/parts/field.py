@@ -18,6 +18,7 @@ from zerorev.kernels import field
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 __all__ = ["apart", "run"]
 
@@ -32,7 +33,7 @@ FIELDS = "zerorev: both rate fields, `kernels.field.rates`; 4 postures, whose wr
 
 def rate_fields(case: Case, standoff: Array, psi: Array) -> Callable[[int], Any]:
     """Both rate fields on all eight branches, as the product computes them of many points."""
-    plane, count = kinematics.twist_plane(case.robot, case.tool, case.hole), standoff.size
+    plane, count = Drilling(case.robot, case.tool, case.hole).plane, standoff.size
     theta_s, theta_psi = np.empty((4, 6, count)), np.empty((4, 6, count))
 
     def computed(_: int) -> None:

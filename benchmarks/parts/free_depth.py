@@ -14,6 +14,7 @@ from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
 from zerorev.model._arrays import Array
 from zerorev.model.resized import resized
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.free_depth import FreeBound, bound_free_depth
 from zerorev.search.free_deepest import CLOSEST, deepest_free
 from zerorev.search.problem import Problem
@@ -28,8 +29,8 @@ SHARES = (0.02, 0.1)
 def run(options: Options) -> Section:
     """Random holes: the bound beside what legs of very many segments attain, and beside the motion that is found."""
     problems = [_free(random_problem(FIRST_SEED + n)) for n in range(options.holes)]
-    motions = np.array([deepest_free(p.robot, p.tool, p.hole, p.settings)[0] for p in problems])
-    closest = np.array([deepest_free(p.robot, p.tool, p.hole, p.settings, CLOSEST)[0] for p in problems])
+    motions = np.array([deepest_free(Drilling(p.robot, p.tool, p.hole), p.settings)[0] for p in problems])
+    closest = np.array([deepest_free(Drilling(p.robot, p.tool, p.hole), p.settings, CLOSEST)[0] for p in problems])
     inner = np.maximum(motions, closest)
     rows, figures, failures, goal = [], {}, [], ""
     for boxes in BUDGETS:
@@ -85,7 +86,7 @@ def _free(problem: Problem) -> Problem:
     """The same with free legs, on an arm of size 1."""
     settings = replace(problem.settings, legs="free", max_twist=problem.settings.max_twist / problem.robot.size)
     robot, tool, hole, settings = resized(problem.robot, problem.tool, problem.hole, settings, 1 / problem.robot.size)
-    return Problem(robot, tool, hole, settings)
+    return Problem(Drilling(robot, tool, hole), settings)
 
 
 def _bound(problem: Problem, depth: float, boxes: int, _: int) -> FreeBound:

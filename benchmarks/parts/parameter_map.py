@@ -11,6 +11,7 @@ from benchmarks.cases import Case, positions
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.parameter_map import parameter_map, spin_axis
 from zerorev.thesis.sampled import SampledObjective, Weighing
 
@@ -66,7 +67,7 @@ def _cells() -> np.ndarray:
 
 
 def _directly(case: Case, _: int) -> float:
-    objective = SampledObjective(case.robot, case.tool, case.hole, threads=1)
+    objective = SampledObjective(Drilling(case.robot, case.tool, case.hole), threads=1)
     return float(objective(spin_axis(SIZE)[_cells()]).min())
 
 
@@ -74,5 +75,5 @@ def _apart(case: Case, way: Weighing) -> float:
     """Greatest difference of the map's scores from direct evaluation."""
     s, t, e = _cells().T
     found = parameter_map(case.robot, case.tool, case.hole, way, size=SIZE)["score"].values[t, s, e]
-    directly = SampledObjective(case.robot, case.tool, case.hole, way)(spin_axis(SIZE)[_cells()])
+    directly = SampledObjective(Drilling(case.robot, case.tool, case.hole), way)(spin_axis(SIZE)[_cells()])
     return float(np.abs(found - directly).max())

@@ -14,6 +14,7 @@ from benchmarks.problems import random_problem
 from benchmarks.proof_study import BUDGETS, FIRST_SEED, bounded, proven
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.proof import Proof, prove
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
@@ -30,8 +31,8 @@ def run(options: Options) -> Section:
     known = {}
     for rate, words in ((0.0, "threshold off"), (job.settings.min_rate, "0.01 deg/mm")):
         for hole in job.holes:
-            problem = Problem(job.robot, job.tool, hole, replace(job.settings, min_rate=rate))
-            best = search(job.robot, job.tool, hole, problem.settings)
+            problem = Problem(Drilling(job.robot, job.tool, hole), replace(job.settings, min_rate=rate))
+            best = search(Drilling(job.robot, job.tool, hole), problem.settings)
             known[f"{hole.id}, {words}"] = partial(_prove, problem, best)
     positions = in_turns(known, options.rounds)
     rows = [

@@ -12,6 +12,7 @@ from benchmarks.cases import Case, positions
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.sampled import SAMPLES, SampledObjective
 from zerorev.thesis.swarm import TABLE_4, SwarmResult, run_swarm
 
@@ -62,7 +63,7 @@ def run(options: Options) -> Section:
 
 
 def _run(case: Case, threads: int, seed: int) -> SwarmResult:
-    objective = SampledObjective(case.robot, case.tool, case.hole, threads=threads)
+    objective = SampledObjective(Drilling(case.robot, case.tool, case.hole), threads=threads)
     return run_swarm(objective, replace(TABLE_4, seed=seed))
 
 

@@ -14,6 +14,7 @@ from benchmarks.arm_numpy import inverse, wrapped
 from benchmarks.cases import Answer, Case
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.thesis.sampled import SAMPLES, Judged, SampledObjective, crowded_fractions, even_fractions
 
@@ -69,7 +70,7 @@ class NumbaObjective(Objective):
 
     def __init__(self, case: Case, fractions: Array | None = None) -> None:
         super().__init__(case, fractions)
-        self.sampled = SampledObjective(case.robot, case.tool, case.hole, fractions=self.fractions, threads=1)
+        self.sampled = SampledObjective(Drilling(case.robot, case.tool, case.hole), fractions=self.fractions, threads=1)
 
     def costs(self, spins: Array) -> Array:
         """Cost on each branch."""

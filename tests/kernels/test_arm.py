@@ -12,6 +12,7 @@ from zerorev.kernels.arm import WRIST_SINGULAR, other_flip
 from zerorev.model.hole import Hole
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 
 POSES = 1_000 if numba.config.DISABLE_JIT else 10_000
 FEW = 100
@@ -150,7 +151,7 @@ class TestRates:
     def test_are_the_inverse_jacobian_of_the_twin(self, any_robot, tool, places):
         for hole, _ in places:
             T = kinematics.tcp_pose(hole, 0.003, 0.2) @ np.linalg.inv(tool.T_flange_tcp)
-            rates = kinematics.joint_rates(any_robot, tool, hole, 0.003, 0.2)
+            rates = joint_rates(Drilling(any_robot, tool, hole), 0.003, 0.2)
             for branch, joints in enumerate(kinematics.inverse(any_robot, T)):
                 for ours, theirs in zip(rates, self.by_twin(any_robot, tool, hole, joints), strict=True):
                     np.testing.assert_allclose(ours[branch], theirs, rtol=1e-8, atol=1e-8)
@@ -167,7 +168,7 @@ class TestRates:
         for hole, _ in places:
             T = kinematics.tcp_pose(hole, standoff, psi) @ np.linalg.inv(tool.T_flange_tcp)
             joints = kinematics.inverse(any_robot, T)
-            rates = kinematics.joint_rates(any_robot, tool, hole, 0.0, 0.0)
+            rates = joint_rates(Drilling(any_robot, tool, hole), 0.0, 0.0)
             for (ahead, behind), rate in zip(joints.reshape(2, 2, 8, 6), rates, strict=True):
                 moved = (ahead - behind + np.pi) % (2 * np.pi) - np.pi
                 slope = moved / (2 * step)
@@ -178,7 +179,7 @@ class TestRates:
 
     def test_wrist_flips_share_their_rates_but_for_the_sign_of_joint_5(self, any_robot, tool, places):
         for hole, _ in places:
-            for field in kinematics.joint_rates(any_robot, tool, hole, 0.002, -0.3):
+            for field in joint_rates(Drilling(any_robot, tool, hole), 0.002, -0.3):
                 np.testing.assert_array_equal(field[0::2], field[1::2] * [1, 1, 1, 1, -1, 1])
 
     def test_spin_cannot_move_joints_1_to_3_where_the_drill_axis_meets_the_wrist_centre(self, any_robot):
@@ -186,14 +187,14 @@ class TestRates:
         assert kinematics.wrist_offset(any_robot, straight) < 1e-15
         for joints in random_joints(any_robot, FEW, seed=5):
             hole = hole_at(any_robot, straight, joints)
-            _, theta_psi = kinematics.joint_rates(any_robot, straight, hole, 0.0, 0.0)
+            _, theta_psi = joint_rates(Drilling(any_robot, straight, hole), 0.0, 0.0)
             assert np.abs(np.nan_to_num(theta_psi[:, :3])).max() < 1e-12
 
     def test_fields_keep_the_shape_of_the_points(self, robot, tool, positions):
         standoff, psi = np.linspace(0, 0.05, 5)[:, None], np.linspace(-1, 1, 3)
-        theta_s, theta_psi = kinematics.joint_rates(robot, tool, positions[0].hole, standoff, psi)
+        theta_s, theta_psi = joint_rates(Drilling(robot, tool, positions[0].hole), standoff, psi)
         assert theta_s.shape == theta_psi.shape == (5, 3, 8, 6)
-        alone = kinematics.joint_rates(robot, tool, positions[0].hole, standoff[3, 0], psi[1])
+        alone = joint_rates(Drilling(robot, tool, positions[0].hole), standoff[3, 0], psi[1])
         # the last bits depend on how many points are worked on at once
         np.testing.assert_allclose([theta_s[3, 1], theta_psi[3, 1]], alone, rtol=1e-12, atol=1e-12)
 
@@ -244,7 +245,7 @@ class TestSingularities:
         T = kinematics.tcp_pose(hole, 0.0, 0.0) @ np.linalg.inv(tool.T_flange_tcp)
         solutions = kinematics.inverse(robot, T)
         self.reproduces(robot, T, solutions)
-        fields = kinematics.joint_rates(robot, tool, hole, 0.0, 0.0)
+        fields = joint_rates(Drilling(robot, tool, hole), 0.0, 0.0)
         for field, twist in zip(fields, twin.twists(hole.direction), strict=True):
             for rates, solution in zip(field, solutions, strict=True):
                 if np.isnan(rates).any():
@@ -269,4 +270,4 @@ class TestSingularities:
         hole = hole_at(robot, tool, joints)
         T = kinematics.forward(robot, joints)
         posture = distance(kinematics.inverse(robot, T)[:, :3], joints[:3]).argmin()
-        return all(np.isnan(field[posture]).all() for field in kinematics.joint_rates(robot, tool, hole, 0.0, 0.0))
+        return all(np.isnan(field[posture]).all() for field in joint_rates(Drilling(robot, tool, hole), 0.0, 0.0))

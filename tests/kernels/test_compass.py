@@ -9,6 +9,7 @@ from benchmarks.cases import NO_THRESHOLD, drilled, random_place
 from oracles.starts import SLOW
 from zerorev.kernels import compass, fan, legs
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.search.problem import Problem
 
@@ -21,24 +22,28 @@ PEERS = 159.87160
 @pytest.fixture
 def problem():
     case = drilled(random_place(1159), 0.052375893186591437)
-    return Problem(case.robot, case.tool, case.hole, NO_THRESHOLD)
+    return Problem(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
 
 
 def point_of(problem, spins):
     start, target, end = np.deg2rad(spins)
-    return np.array([target, (start - target) / problem.hole.depth, (end - target) / problem.hole.depth])
+    return np.array(
+        [target, (start - target) / problem.drilling.hole.depth, (end - target) / problem.drilling.hole.depth]
+    )
 
 
 def searched(how, problem, point, step, nodes=24):
     """Where it ends, and the figures there."""
     (asked, mode), best, point = problem.objective(), np.empty(3), point.copy()
-    how(problem.robot.arm, problem.plane, 3, point, step, problem.weights, asked, mode, nodes, best)
+    how(problem.drilling.robot.arm, problem.drilling.plane, 3, point, step, problem.weights, asked, mode, nodes, best)
     return point, best
 
 
 def judged(problem, point, nodes=24):
     room, (asked, mode) = np.empty((2, legs.ROWS, 6)), problem.objective()
-    return compass.judge_point(problem.robot.arm, problem.plane, 3, point, problem.weights, asked, mode, nodes, room)
+    return compass.judge_point(
+        problem.drilling.robot.arm, problem.drilling.plane, 3, point, problem.weights, asked, mode, nodes, room
+    )
 
 
 @pytest.mark.parametrize("how", [compass.refine, compass.settle])
@@ -63,8 +68,8 @@ def test_goes_down_along_an_edge(problem):
     assert stopped[0] == settled[0] == 5
     assert np.rad2deg(stopped[2] - settled[2]) > 0.005
     psi_t, *slopes = point
-    start, end = (psi_t + slope * problem.hole.depth for slope in slopes)
-    motion = Profile.straight(problem.hole.depth, start, psi_t, end)
-    score = evaluate(problem.robot, problem.tool, problem.hole, motion, 3).score
+    start, end = (psi_t + slope * problem.drilling.hole.depth for slope in slopes)
+    motion = Profile.straight(problem.drilling.hole.depth, start, psi_t, end)
+    score = evaluate(problem.drilling.robot, problem.drilling.tool, problem.drilling.hole, motion, 3).score
     assert score.reversals == 5
     assert np.rad2deg(score.travel) < PEERS

@@ -8,7 +8,7 @@ import pytest
 from oracles import sampled as twin
 from oracles.starts import SLOW, TOOL, starts
 from zerorev.kernels.cube import cube
-from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 UNEVEN = np.array([0.0, 0.03, 0.1, 0.3, 0.35, 0.6, 0.97, 1.0])
 RATE = np.deg2rad(200.0)  # [rad/m] a motion threshold that some joints keep and some do not
@@ -26,7 +26,7 @@ def mapped(robot, hole, outer, target, *, first_point=False, rate=0.0, mean=Fals
     score, travel = np.empty(shape), np.empty(shape)
     reversals, branch = np.empty(shape, dtype=np.int8), np.empty(shape, dtype=np.int8)
     cube(
-        robot.arm, kinematics.twist_plane(robot, TOOL, hole), hole.depth, UNEVEN, least, robot.limits.lower,
+        robot.arm, Drilling(robot, TOOL, hole).plane, hole.depth, UNEVEN, least, robot.limits.lower,
         robot.limits.upper, first_point, (1 / 7, 1 / (84 * np.pi)), only, outer, target, score, reversals, branch,
         travel,
     )  # fmt: skip

@@ -7,12 +7,12 @@ import pytest
 
 from oracles.starts import LEAST_RATE, SLOW, Start, asked, starts
 from zerorev.kernels import fan, legs
-from zerorev.search.problem import Asked
+from zerorev.kernels.layout import Constraints
 
 
 class TestFan:
     def slopes(self, kappa, *, psi_t=0.0, bound=0.0):
-        wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), 100.0, bound)
+        wanted = Constraints(np.full(6, -9.0), np.full(6, 9.0), LEAST_RATE, bound, 100.0, depth=0.05)
         out, critical = np.empty(fan.MAX_FAN), np.zeros(fan.MAX_FAN, dtype=bool)
         count = fan.fan_slopes(np.array(kappa), psi_t, wanted, out, critical)
         return out[:count], critical[:count]

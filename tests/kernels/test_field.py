@@ -10,6 +10,7 @@ from zerorev.kernels import arm as one_by_one
 from zerorev.kernels import field
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 BY_NAME = pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: robot.name)
 
@@ -49,7 +50,7 @@ def random_planes(robot, count, seed):
         direction = rng.normal(size=3)
         across = np.cross(direction, rng.normal(size=3))
         hole = Hole("any", rng.uniform(-0.7, 0.7, 3) * size, direction, 0.1, psi_zero=across)
-        yield kinematics.twist_plane(robot, TOOL, hole)
+        yield Drilling(robot, TOOL, hole).plane
 
 
 class TestFields:
@@ -103,14 +104,14 @@ class TestFields:
         joints[4] = 0.0
         straight = kinematics.forward(robot, joints) @ TOOL.T_flange_tcp
         bent = Hole("any", np.zeros(3), down, 0.1, psi_zero=np.array([0.6, 0.8, 0.0]))
-        lever = kinematics.tcp_pose(bent, 0.0, 0.0)[:3, :3] @ kinematics.twist_plane(robot, TOOL, bent).wrist
+        lever = kinematics.tcp_pose(bent, 0.0, 0.0)[:3, :3] @ Drilling(robot, TOOL, bent).plane.wrist
         over = np.array([0.0, 0.0, arm.c1 + 0.6 * (arm.c2 + arm.c3)]) - lever
         for target, direction, across in (
             (straight[:3, 3], -straight[:3, 2], straight[:3, 1]),
             (over, down, bent.psi_zero),
             (np.array([9.0, 0.0, 0.0]), down, bent.psi_zero),
         ):
-            plane = kinematics.twist_plane(robot, TOOL, Hole("any", target, direction, 0.1, psi_zero=across))
+            plane = Drilling(robot, TOOL, Hole("any", target, direction, 0.1, psi_zero=across)).plane
             found = [many_at_once(robot, plane, posture, np.zeros(1), np.zeros(1)) for posture in range(4)]
             assert np.isnan(found).all(axis=(1, 2, 3)).any()
             for fields in found:

@@ -8,9 +8,10 @@ import pytest
 
 from oracles import free as twin
 from zerorev.kernels import field, free, segments, tube
+from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
-from zerorev.motion import kinematics
-from zerorev.search.viable import Grain, Held
+from zerorev.motion.drilling import Drilling
+from zerorev.search.viable import Grain
 
 SLOW = bool(numba.config.DISABLE_JIT)
 X = np.array([1.0, 0.0, 0.0])
@@ -33,7 +34,7 @@ def hole_at(target_mm):
 
 
 def held_by(robot, *, min_rate=LEAST, psi_bound=0.0, steepest=CAP):
-    return Held(robot.limits.lower, robot.limits.upper, min_rate, psi_bound, steepest, 2 * np.pi)
+    return Constraints(robot.limits.lower, robot.limits.upper, min_rate, psi_bound, steepest, 2 * np.pi)
 
 
 class Marched:
@@ -41,7 +42,7 @@ class Marched:
 
     def __init__(self, robot, tool, target, posture, psi_deg, held, grain, longest):
         self.plane, self.posture, self.psi_t = (
-            kinematics.twist_plane(robot, tool, hole_at(target)),
+            Drilling(robot, tool, hole_at(target)).plane,
             posture,
             np.deg2rad(psi_deg),
         )
@@ -57,7 +58,7 @@ def test_admissible_slopes_are_those_that_keep_every_joint_going(robot, tool):
     """On random points, for random signs, among slopes tried one by one."""
     rng = np.random.default_rng(1)
     hole, held = hole_at((500, 300, 800)), held_by(robot, min_rate=np.deg2rad(10.0))
-    plane = kinematics.twist_plane(robot, tool, hole)
+    plane = Drilling(robot, tool, hole).plane
     work, lo, hi, spare = tube.workspace()
     slopes = np.linspace(-CAP, CAP, 4001)
     seen = 0
@@ -131,7 +132,7 @@ def test_less_is_reached_with_less_twist_more_threshold_or_bounded_spin(robot, t
 @pytest.mark.skipif(SLOW, reason="many rows")
 @pytest.mark.parametrize("unit", [0.0, 0.05])
 def test_the_derivatives_of_segments_are_those_of_differences(robot, tool, unit):
-    plane = kinematics.twist_plane(robot, tool, hole_at((500, 300, 800)))
+    plane = Drilling(robot, tool, hole_at((500, 300, 800))).plane
     standoff, psi, shares = np.array([0.0, 0.02, 0.05, 0.09]), np.array([0.35, 0.5, 0.7, 1.0]), np.linspace(0, 1, 5)
     side = np.array([1.0, -1.0, 1.0, 1.0, -1.0, 1.0])
 

@@ -110,7 +110,6 @@ import numpy as np
 import zerorev as zr
 from zerorev.kernels import legs
 from zerorev.kernels.field import ROOM
-from zerorev.motion.kinematics import twist_plane
 
 robot = zr.read_robot("kuka_kr6_r700_2")
 plane = twist_plane(robot, zr.read_tool("thesis_drill"), zr.Hole("one", [0.5, 0.3, 0.8], [1, 0, 0], 0.01))

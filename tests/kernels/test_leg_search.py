@@ -10,12 +10,12 @@ import pytest
 from oracles import legs as twin
 from oracles.starts import ALL_JOINTS, LEAST_RATE, SLOW, TOOL, Start, asked, starts
 from zerorev.kernels import leg_search, legs
-from zerorev.search.problem import Asked
+from zerorev.kernels.layout import Constraints
 
 
 class TestSlopeCandidates:
     def candidates(self, kappa, keep, side, psi_t=0.0, bound=0.0, steepest=100.0):
-        wanted = Asked(0.05, LEAST_RATE, False, False, np.full(6, -9.0), np.full(6, 9.0), steepest, bound)
+        wanted = Constraints(np.full(6, -9.0), np.full(6, 9.0), LEAST_RATE, bound, steepest, depth=0.05)
         out = np.empty(leg_search.MAX_SLOPES)
         return out[: leg_search.slope_candidates(np.array(kappa), np.array(keep), side, psi_t, wanted, out)]
 
@@ -68,7 +68,7 @@ class Side:
 
     start: Start
     side: float
-    wanted: Asked
+    wanted: Constraints
     tried: twin.Judged
 
     def least_travel(self):

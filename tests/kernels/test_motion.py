@@ -9,14 +9,14 @@ from oracles.motion import dense
 from oracles.starts import SLOW, TOOL, starts
 from zerorev.kernels import motion as kernels
 from zerorev.model.profile import Profile
-from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 JUMP = 0.5
 DENSE = 300 if SLOW else 4000
 
 
 def turning(robot, hole, profile, branch, room=64):
-    plane, slowest, turns = kinematics.twist_plane(robot, TOOL, hole), np.empty(6), np.full((room, 3), np.nan)
+    plane, slowest, turns = Drilling(robot, TOOL, hole).plane, np.empty(6), np.full((room, 3), np.nan)
     count = kernels.turning_points(
         robot.arm, plane, branch, profile.standoff, profile.psi, profile.corner, robot.nil_rate, slowest, turns
     )
@@ -24,7 +24,7 @@ def turning(robot, hole, profile, branch, room=64):
 
 
 def followed(robot, hole, profile, branch, turns, samples=300):
-    plane = kinematics.twist_plane(robot, TOOL, hole)
+    plane = Drilling(robot, TOOL, hole).plane
     joints, low, high, moved = np.empty((profile.psi.size, 6)), np.empty(6), np.empty(6), np.empty((2, 6))
     runs = kernels.follow(
         robot.arm, plane, branch, profile.standoff, profile.psi, profile.corner, samples, turns, JUMP,

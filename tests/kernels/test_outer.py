@@ -7,10 +7,11 @@ import numpy as np
 from oracles import holes
 from zerorev.kernels import outer_cells, outer_sets
 from zerorev.kernels.intervals import LANES
-from zerorev.motion import kinematics
+from zerorev.kernels.layout import Constraints
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import joints_along
 from zerorev.search.bounds.cells import cell_formulas
-from zerorev.search.bounds.free_legs import Grid, Rules
+from zerorev.search.bounds.free_legs import Grid
 from zerorev.search.bounds.tree import model_limits
 
 CAP = np.deg2rad(5e3)
@@ -23,8 +24,8 @@ def random_cells(rng, drilled, posture):
     edges = np.sort(rng.uniform(0, 0.2, 1)) + np.arange(slabs + 1) * 10.0 ** rng.uniform(-5, -1.5)
     grid = Grid(-np.pi, 2 * np.pi / columns, columns, True, edges)
     lower, upper = model_limits(robot)
-    rules = Rules(float(rng.choice([0.0, np.deg2rad(10.0)])), CAP, lower, upper)
-    plane = kinematics.twist_plane(robot, tool, hole)
+    rules = Constraints(lower, upper, float(rng.choice([0.0, np.deg2rad(10.0)])), steepest=CAP)
+    plane = Drilling(robot, tool, hole).plane
     formulas = cell_formulas(robot.arm, plane, posture, (True,) * 6)
     slab, column = rng.integers(0, slabs, LANES), rng.integers(0, columns, LANES)
     flips, raw = np.full(LANES, 3), np.empty((LANES, 6, outer_cells.RAW))
@@ -46,14 +47,14 @@ def check_cells(rng, drilled):
             share = rng.choice([0.0, 1.0, rng.uniform()], 2)
             s = grid.edges[slab[n]] + share[0] * (grid.edges[slab[n] + 1] - grid.edges[slab[n]])
             psi = grid.left + (column[n] + share[1]) * grid.width
-            theta_s, theta_psi = (each[branch] * sign for each in kinematics.joint_rates(robot, tool, hole, s, psi))
+            theta_s, theta_psi = (each[branch] * sign for each in joint_rates(Drilling(robot, tool, hole), s, psi))
             if np.isnan(theta_s).any():
                 continue
             slope = rng.choice([-1.0, 1.0]) * 10.0 ** rng.uniform(-2, np.log10(CAP))
             rate = theta_s + slope * theta_psi
             if np.abs(rate).min() >= rules.min_rate and np.abs(rate).min() > 1e-9:
                 count += 1
-                angles = joints_along(robot, tool, hole, branch, np.array([s]), np.array([psi]))[0]
+                angles = joints_along(Drilling(robot, tool, hole), branch, np.array([s]), np.array([psi]))[0]
                 model = angles * sign - np.array(robot.arm.offset)
                 arm = robot.arm
                 elbow = abs(arm.c2 * (arm.a2 * np.cos(model[2]) + arm.c3 * np.sin(model[2])))
@@ -178,9 +179,9 @@ class TestCells:
         for seed in range(4):
             robot, tool, hole, _ = holes.random_hole(seed).all
             branch, sign = 0 if robot.arm.sign[4] > 0 else 1, np.array(robot.arm.sign)
-            plane = kinematics.twist_plane(robot, tool, hole)
+            plane = Drilling(robot, tool, hole).plane
             grid = Grid(-np.pi, 2 * np.pi / 8192, 8192, True, np.array([1e-3, 1.1e-3]))
-            rules = Rules(0.0, CAP, *model_limits(robot))
+            rules = Constraints(*model_limits(robot), 0.0, steepest=CAP)
             column = rng.integers(0, 8192, LANES)
             flips, raw = np.full(LANES, 3), np.empty((LANES, 6, outer_cells.RAW))
             formulas = cell_formulas(robot.arm, plane, 0, (False,) * 6)
@@ -189,7 +190,7 @@ class TestCells:
                 np.empty((0, 6, 2)),
             )  # fmt: skip
             psi = grid.left + (column + 0.5) * grid.width
-            fields = kinematics.joint_rates(robot, tool, hole, np.full(LANES, 1.05e-3), psi)
+            fields = joint_rates(Drilling(robot, tool, hole), np.full(LANES, 1.05e-3), psi)
             theta_s, theta_psi = (each[:, branch] * sign for each in fields)
             with np.errstate(invalid="ignore"):
                 critical = (-theta_s / theta_psi).max(axis=1)

@@ -10,9 +10,11 @@ import pytest
 
 from oracles import free as twin
 from zerorev.kernels import polyline, reach, viable
+from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
-from zerorev.search.viable import Grain, Held, Tubes
+from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.search.viable import Grain, Tubes
 
 SLOW = bool(numba.config.DISABLE_JIT)
 CAP, LEAST = np.deg2rad(5e3), np.deg2rad(1e-4)
@@ -38,11 +40,11 @@ class Pair:
     def __init__(self, robot, tool, place, *, longest, grain, steepest=CAP, limited=False):
         target, self.posture, spins = place
         self.robot, self.tool, self.hole = robot, tool, Hole("h", np.array(target) * 1e-3, np.array([1.0, 0, 0]), 0.01)
-        self.plane, self.grain, self.limited = kinematics.twist_plane(robot, tool, self.hole), grain, limited
-        self.held = Held(robot.limits.lower, robot.limits.upper, LEAST, 0.0, steepest, 2 * np.pi)
+        self.plane, self.grain, self.limited = Drilling(robot, tool, self.hole).plane, grain, limited
+        self.held = Constraints(robot.limits.lower, robot.limits.upper, LEAST, 0.0, steepest, 2 * np.pi)
         self.room, self.tubes, self.viable, self.overlap = reach.workspaces(), Tubes(), Tubes(), np.empty(2)
         self.low, self.high = np.deg2rad(spins)
-        _, theta_psi = kinematics.joint_rates(robot, tool, self.hole, 0.0, 0.5 * (self.low + self.high))
+        _, theta_psi = joint_rates(Drilling(robot, tool, self.hole), 0.0, 0.5 * (self.low + self.high))
         flip = np.array([1, 1, 1, 1, 1.0 if robot.arm.sign[4] > 0 else -1.0, 1])
         self.sigma = np.sign(theta_psi[2 * self.posture])
         self.sense = self.sigma * flip

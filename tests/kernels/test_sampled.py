@@ -11,7 +11,7 @@ from oracles import sampled as twin
 from oracles.starts import SLOW, TOOL, starts
 from zerorev.kernels.sampled import judge
 from zerorev.model.robot import JointLimits
-from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 CROWDED = np.array([0.0, 1e-4, 0.03, 0.1, 0.3, 0.35, 0.6, 0.97, 1.0])
 EVEN = np.linspace(0.0, 1.0, 9)
@@ -29,7 +29,7 @@ def judged(robot, hole, fractions, spins, *, first_point=False, rate=0.0, mean=F
         least[:-1] = np.sin(rate * hole.depth * np.diff(fractions))[::-1]
     costs, reversals = np.empty((len(spins), 8)), np.empty((len(spins), 8), dtype=np.int64)
     judge(
-        robot.arm, kinematics.twist_plane(robot, TOOL, hole), hole.depth, fractions, least, robot.limits.lower,
+        robot.arm, Drilling(robot, TOOL, hole).plane, hole.depth, fractions, least, robot.limits.lower,
         robot.limits.upper, first_point, (1 / 7, 1 / (84 * np.pi)), spins, costs, reversals,
     )  # fmt: skip
     return costs, reversals

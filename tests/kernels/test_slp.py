@@ -5,9 +5,11 @@ import pytest
 from numba import config
 
 from zerorev.kernels import segments
+from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
-from zerorev.search.segments import GOALS, Legs, Rules, bettered
+from zerorev.motion.drilling import Drilling
+from zerorev.search.segments import GOALS, Legs, bettered
 
 SLOW = config.DISABLE_JIT
 NO_LIMIT = np.full(6, np.inf)
@@ -36,11 +38,11 @@ def setting_out(robot, plane, posture, psi_t):
 
 @pytest.fixture
 def go(robot, tool):
-    plane = kinematics.twist_plane(robot, tool, hole_at())
+    plane = Drilling(robot, tool, hole_at()).plane
     sense = setting_out(robot, plane, BRANCH // 2, PSI[0])
 
     def better(legs, goal="depth", branch=BRANCH, **rules):
-        held = Rules(**({"lower": -NO_LIMIT, "upper": NO_LIMIT, "min_rate": LEAST} | rules))
+        held = Constraints(**({"lower": -NO_LIMIT, "upper": NO_LIMIT, "min_rate": LEAST} | rules))
         return bettered(robot.arm, plane, branch, sense, held, legs, goal, looks=5 if SLOW else 17, enough=1e-7)
 
     better.margin = lambda legs: dense_margin(robot, plane, sense, legs)
@@ -64,7 +66,7 @@ def dense_margin(robot, plane, sense, legs):
 
 def test_the_elbow_and_its_derivatives(robot, tool):
     """Its square sine against the angle of joint 3 itself, its derivatives against differences."""
-    plane, rng, seen = kinematics.twist_plane(robot, tool, hole_at()), np.random.default_rng(3), 0
+    plane, rng, seen = Drilling(robot, tool, hole_at()).plane, np.random.default_rng(3), 0
     for _ in range(20):
         s, psi, posture = rng.uniform(0, 0.1), rng.uniform(-np.pi, np.pi), int(rng.integers(4))
         bend, by_s, by_psi = segments.elbow(robot.arm, plane, posture, s, psi)
@@ -138,8 +140,8 @@ class TestDepth:
         assert legs.depth < free.depth
 
     def test_what_cannot_be_run_is_left_as_it_is(self, robot, tool):
-        plane = kinematics.twist_plane(robot, tool, hole_at((3.0, 0.0, 0.5)))
-        start, held = start_at(0.05), Rules(-NO_LIMIT, NO_LIMIT, LEAST)
+        plane = Drilling(robot, tool, hole_at((3.0, 0.0, 0.5))).plane
+        start, held = start_at(0.05), Constraints(-NO_LIMIT, NO_LIMIT, LEAST)
         legs, lack = bettered(robot.arm, plane, 0, np.ones(6), held, start, "depth")
         assert lack == np.inf
         np.testing.assert_array_equal(legs.psi, start.psi)

@@ -15,6 +15,7 @@ from zerorev.maps.workspace import read_workspace_map
 from zerorev.model.job import Settings
 from zerorev.model.map_task import MapTask, Question, cone
 from zerorev.motion.critical import critical_at
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.planning.hole import plan
 from zerorev.planning.job import plan_job
@@ -98,13 +99,17 @@ def test_twist_spread_is_the_least_over_all_spins(robot, tool, tmp_path):
         spreads = [
             each.spread
             for psi in np.linspace(-np.pi, np.pi, 181)
-            for each in critical_at(robot, tool, hole, psi)
+            for each in critical_at(Drilling(robot, tool, hole), psi)
             if within_limits(robot, tool, hole, psi)[each.branch]
         ]
         value = float(found["twist_spread_deg_per_mm"].isel(at))
         assert value <= np.rad2deg(min(spreads)) / 1e3 + 1e-9
         psi = np.deg2rad(float(found["psi_target_deg"].isel(at)))
-        there = [each for each in critical_at(robot, tool, hole, psi) if each.branch == int(found["branch"].isel(at))]
+        there = [
+            each
+            for each in critical_at(Drilling(robot, tool, hole), psi)
+            if each.branch == int(found["branch"].isel(at))
+        ]
         assert value == pytest.approx(np.rad2deg(there[0].spread) / 1e3)
 
 

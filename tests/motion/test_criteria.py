@@ -31,6 +31,7 @@ from zerorev.motion.criteria import (
     objective_of,
     thesis_objective,
 )
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, evaluate
 from zerorev.motion.joint_path import joint_path
 from zerorev.planning.hole import plan
@@ -43,7 +44,7 @@ ALL = tuple((name, 1.0) for name in job.CRITERIA)
 def measured(robot, tool, position, profile=None, **settings):
     settings = Settings(**settings)
     evaluation = evaluate(robot, tool, position.hole, profile or position.profile, position.branch, settings)
-    return measure(robot, tool, position.hole, evaluation, settings)
+    return measure(Drilling(robot, tool, position.hole), evaluation, settings)
 
 
 class TestFigures:
@@ -80,7 +81,7 @@ class TestFigures:
         assert figures.tool_speed_change * 60 / (2 * np.pi) == pytest.approx(20 / 360 * 60)
 
     def test_distance_to_limits_is_a_share_of_half_the_range(self, robot, tool, position):
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch, samples=4000)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch, samples=4000)
         middle = (robot.limits.lower + robot.limits.upper) / 2
         off = np.abs(path.joints - middle) / (robot.limits.upper - middle)
         figures = measured(robot, tool, position)
@@ -116,7 +117,7 @@ class TestFigures:
 
     def test_compliance_of_a_motion_is_its_worst(self, robot, tool, position):
         figures = measured(robot, tool, position, joint_stiffness=STIFFNESS)
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch, samples=50)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch, samples=50)
         give = []
         for joints in path.joints:
             J = twin.jacobian(robot, joints, twin.tcp(robot, tool, joints)[:3, 3])[:3]
@@ -142,7 +143,7 @@ class TestFigures:
         assert manipulability(any_robot, np.array([0.1, -0.8, 0.9, 0.3, 0, 0.2])) == 0
 
     def test_manipulability_of_a_motion_is_its_least(self, robot, tool, position):
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch, samples=4000)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch, samples=4000)
         least = manipulability(robot, path.joints).min()
         assert measured(robot, tool, position).manipulability == pytest.approx(least, rel=1e-5)
 
@@ -264,7 +265,7 @@ class TestFiles:
         whole = Plan(asked.robot, asked.tool, asked.settings, (answer,))
         stated = plan_data(whole)["holes"][0]["criteria"]
         evaluation = Evaluation(answer.motion, answer.score, ())
-        figures = measure(asked.robot, asked.tool, asked.holes[0], evaluation, asked.settings)
+        figures = measure(Drilling(asked.robot, asked.tool, asked.holes[0]), evaluation, asked.settings)
         assert stated["travel_deg"] == pytest.approx(np.rad2deg(figures.travel))
         assert stated["margin_deg_per_mm"] == pytest.approx(np.rad2deg(figures.margin) / 1e3)
         assert stated["plunge_rotation_deg"] == pytest.approx(20.1)

@@ -15,6 +15,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.evaluation import evaluate, meets_threshold
 from zerorev.motion.joint_path import joint_path, joints_along, outward_rates, sample_distances
 
@@ -101,7 +102,7 @@ class TestEvents:
         profile = self.turning(robot, tool, hole, branch)
         score = score_of(robot, tool, hole, profile, branch)
         distance = sample_distances(profile, 20_000)
-        joints = joints_along(robot, tool, hole, branch, *profile.at(distance))
+        joints = joints_along(Drilling(robot, tool, hole), branch, *profile.at(distance))
         rows = twin.reversals(joints)
         assert score.reversals_per_joint == tuple(map(len, rows))
         assert sum(score.reversals_per_joint) >= 6
@@ -152,7 +153,7 @@ class TestEvents:
 
         def rate(s, psi_t):
             s = np.atleast_1d(s)
-            return outward_rates(robot, tool, hole, 6, s, psi_t + slope * s, slope)[:, 3]
+            return outward_rates(Drilling(robot, tool, hole), 6, s, psi_t + slope * s, slope)[:, 3]
 
         side = np.sign(rate(0.01, np.deg2rad(90))[0])
 
@@ -187,7 +188,7 @@ class TestEvents:
         straight = Tool.from_mm_deg((0, 0, 120), (180, 0, 0))
         T = kinematics.forward(robot, np.deg2rad([0, -80, 100, 0, 0, 0])) @ straight.T_flange_tcp
         hole = Hole("here", T[:3, 3], -T[:3, 2], 0.02, psi_zero=T[:3, 1])
-        assert np.isnan(kinematics.joint_rates(robot, straight, hole, 0.0, 0.0)[0][0]).all()
+        assert np.isnan(joint_rates(Drilling(robot, straight, hole), 0.0, 0.0)[0][0]).all()
         score = score_of(robot, straight, hole, Profile.straight(0.02, 0, 0, 0), 0)
         assert score.reversals_per_joint == (0, 1, 1, 0, 1, 0)
         assert {round(event.standoff, 9) for event in score.events} == {0.0}
@@ -205,18 +206,18 @@ class TestScore:
     def test_travel_of_a_turning_motion_is_what_dense_samples_add_up_to(self, robot, tool, positions):
         hole = positions[1].hole
         profile = TestEvents().turning(robot, tool, hole, 0)
-        joints = joints_along(robot, tool, hole, 0, *profile.at(sample_distances(profile, 40_000)))
+        joints = joints_along(Drilling(robot, tool, hole), 0, *profile.at(sample_distances(profile, 40_000)))
         dense = np.abs(np.diff(joints, axis=0)).sum()
         assert score_of(robot, tool, hole, profile, 0).travel == pytest.approx(dense, abs=1e-6)
 
     def test_least_rate_is_that_of_dense_samples(self, robot, tool, position):
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch, samples=20_000)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch, samples=20_000)
         dense = np.abs(np.diff(path.joints, axis=0) / np.diff(path.distance)[:, None]).min(axis=0)
         score = score_of(robot, tool, position.hole, position.profile, position.branch)
         np.testing.assert_allclose(score.min_rate, dense, rtol=2e-3, atol=1e-4)
 
     def test_limit_distance_is_the_least_over_the_motion(self, robot, tool, position):
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch)
         score = score_of(robot, tool, position.hole, position.profile, position.branch)
         room = np.minimum(path.joints - robot.limits.lower, robot.limits.upper - path.joints)
         np.testing.assert_array_equal(score.limit_distance, room.min(axis=0))

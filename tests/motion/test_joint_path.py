@@ -15,6 +15,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import choose_turns, joint_path, joints_along, sample_distances
 
 FULL = 2 * np.pi
@@ -35,7 +36,7 @@ def hole_under(robot, tool, joints, *, depth, standoff):
 
 class TestPath:
     def test_follows_the_twin_that_knows_no_branches(self, robot, tool, position):
-        path = joint_path(robot, tool, position.hole, position.profile, position.branch, samples=60)
+        path = joint_path(Drilling(robot, tool, position.hole), position.profile, position.branch, samples=60)
         traced = twin.trace(robot, tool, position.hole, path.standoff, path.psi, path.joints[0])
         np.testing.assert_allclose(path.joints, traced, atol=1e-11)
 
@@ -47,7 +48,7 @@ class TestPath:
         profile = Profile(np.array([0.04, 0.02, 0.0, 0.01, 0.04]), np.array([0.2, 0.0, -0.1, -0.3, -0.2]))
         seen = 0
         for branch in range(8):
-            path = joint_path(any_robot, tool, hole, profile, branch, samples=30)
+            path = joint_path(Drilling(any_robot, tool, hole), profile, branch, samples=30)
             if path.fault is None and path.jump is None:
                 traced = twin.trace(any_robot, tool, hole, path.standoff, path.psi, path.joints[0])
                 np.testing.assert_allclose(path.joints, traced, atol=1e-10)
@@ -57,7 +58,7 @@ class TestPath:
     def test_breakpoints_are_among_the_samples(self, robot, tool, positions):
         hole = positions[0].hole
         profile = Profile(np.array([0.05, 0.0123, 0.0, 0.0307, 0.05]), np.deg2rad([14, 2, -6, -20, -30]))
-        path = joint_path(robot, tool, hole, profile, 4, samples=37)
+        path = joint_path(Drilling(robot, tool, hole), profile, 4, samples=37)
         motion = path.at_breakpoints(profile, 4)
         T = kinematics.forward(robot, motion.joints) @ tool.T_flange_tcp
         np.testing.assert_allclose(T, kinematics.tcp_pose(hole, profile.standoff, profile.psi), atol=1e-12)
@@ -75,7 +76,7 @@ class TestPath:
     def test_the_corner_may_lie_deeper_than_the_target(self, robot, tool, positions):
         first = positions[0]
         profile = Profile.straight(0.05, *first.profile.psi, corner=-0.002)
-        path = joint_path(robot, tool, first.hole, profile, first.branch)
+        path = joint_path(Drilling(robot, tool, first.hole), profile, first.branch)
         assert path.runs
         assert path.standoff.min() == -0.002
 
@@ -87,11 +88,11 @@ class TestTurns:
         joints = np.deg2rad([20, -80, 100, 15, 40, 170 * way])
         hole = hole_under(robot, STRAIGHT, joints, depth=0.01, standoff=0.01)
         profile = Profile.straight(0.01, *np.deg2rad([0, 170 * way, 340 * way]))
-        first_turn = joints_along(robot, STRAIGHT, hole, 0, *profile.at(sample_distances(profile, 400)))[:, 5]
+        first_turn = joints_along(Drilling(robot, STRAIGHT, hole), 0, *profile.at(sample_distances(profile, 400)))[:, 5]
         low, high = robot.limits.lower[5], robot.limits.upper[5]
         assert first_turn.min() < low or first_turn.max() > high
 
-        path = joint_path(robot, STRAIGHT, hole, profile, 0)
+        path = joint_path(Drilling(robot, STRAIGHT, hole), profile, 0)
         assert path.runs
         assert np.ptp(path.joints[:, 5]) > np.deg2rad(330)
         assert low <= path.joints[:, 5].min() <= path.joints[:, 5].max() <= high
@@ -137,10 +138,10 @@ class TestTurns:
 
     def test_free_turns_lie_farthest_from_the_limits_unless_asked_near(self, robot, tool, positions):
         first = positions[0]
-        middle = joint_path(robot, tool, first.hole, first.profile, first.branch).joints[0]
+        middle = joint_path(Drilling(robot, tool, first.hole), first.profile, first.branch).joints[0]
         assert np.rad2deg(middle[5]) == pytest.approx(217.3562 - 360, abs=1e-3)
         published = tuple(np.deg2rad(first.axis_deg[0]))
-        near = joint_path(robot, tool, first.hole, first.profile, first.branch, near=published).joints[0]
+        near = joint_path(Drilling(robot, tool, first.hole), first.profile, first.branch, near=published).joints[0]
         np.testing.assert_allclose(np.rad2deg(near), first.axis_deg[0], atol=1e-3)
         assert np.rad2deg(near[5]) == pytest.approx(217.3562, abs=1e-3)
 
@@ -149,7 +150,7 @@ class TestFaults:
     def test_out_of_reach_names_the_first_standoff_lost(self, robot, tool):
         joints = np.deg2rad([0, -60, 90, 0, 60, 0])
         hole = hole_under(robot, tool, joints, depth=0.6, standoff=0.0)
-        path = joint_path(robot, tool, hole, Profile.straight(0.6, 0, 0, 0), 0)
+        path = joint_path(Drilling(robot, tool, hole), Profile.straight(0.6, 0, 0, 0), 0)
         reached = ~np.isnan(path.joints[:, 0])
         assert path.fault is not None
         assert not path.runs
@@ -158,7 +159,7 @@ class TestFaults:
     def test_a_joint_over_its_limits_is_named(self, robot, tool, positions):
         first = positions[0]
         narrow = with_limits(robot, 4, -10, 11)
-        path = joint_path(narrow, tool, first.hole, first.profile, first.branch)
+        path = joint_path(Drilling(narrow, tool, first.hole), first.profile, first.branch)
         assert path.over_limit == (4,)
         assert path.fault is path.jump is None
         assert not path.runs
@@ -168,7 +169,7 @@ class TestFaults:
         joints = np.deg2rad([25, -80, 100, 0, 0, 10])
         hole = hole_under(robot, STRAIGHT, joints, depth=0.03, standoff=0.0151)
         for branch in (0, 1):
-            path = joint_path(robot, STRAIGHT, hole, Profile.straight(0.03, 0, 0, 0), branch)
+            path = joint_path(Drilling(robot, STRAIGHT, hole), Profile.straight(0.03, 0, 0, 0), branch)
             assert path.fault is None
             assert path.jump == pytest.approx(0.0151, abs=1e-4)
             assert not path.runs

@@ -10,6 +10,8 @@ from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.critical import kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
 
 TILTED = Hole("tilted", np.array([0.45, 0.1, 0.7]), np.array([1.0, 0.4, -0.3]), 0.03)
 
@@ -66,8 +68,8 @@ def test_the_jacobian_is_how_the_tip_moves_by_differences_of_the_forward_kinemat
 
 
 def test_the_jacobian_undoes_the_two_rate_fields(robot, tool, position):
-    theta_s, theta_psi = (field[position.branch] for field in kinematics.joint_rates(
-        robot, tool, position.hole, 0.01, position.profile.psi[1]))  # fmt: skip
+    theta_s, theta_psi = (field[position.branch] for field in joint_rates(
+        Drilling(robot, tool, position.hole), 0.01, position.profile.psi[1]))  # fmt: skip
     pose = kinematics.tcp_pose(position.hole, 0.01, position.profile.psi[1]) @ np.linalg.inv(tool.T_flange_tcp)
     J = kinematics.jacobian(robot, tool, kinematics.inverse(robot, pose)[position.branch])
     np.testing.assert_allclose(J @ theta_s, [-1, 0, 0, 0, 0, 0], atol=1e-12)
@@ -88,7 +90,7 @@ def test_the_lever_is_the_distance_of_the_wrist_centre_from_the_drill_axis(any_r
 
 def test_critical_rates_of_position_1(robot, tool, positions):
     first = positions[0]
-    kappa = kinematics.critical_rates(robot, tool, first.hole, 0.0, first.profile.psi[1])[first.branch]
+    kappa = kappa_of(*joint_rates(Drilling(robot, tool, first.hole), 0.0, first.profile.psi[1]))[first.branch]
     in_deg_per_mm = np.rad2deg(kappa) / 1e3
     np.testing.assert_allclose(in_deg_per_mm, [0.2936, -0.4797, -0.4367, -0.0049, 0.1663, 0.3877], atol=5e-5)
     outwards = np.rad2deg(first.profile.twist_rate) / 1e3
@@ -98,13 +100,13 @@ def test_critical_rates_of_position_1(robot, tool, positions):
 
 def test_a_joint_stands_still_at_its_critical_rate(robot, tool, position):
     standoff, psi = np.meshgrid(np.linspace(0, position.depth_mm / 1e3, 4), np.linspace(-3, 3, 5))
-    theta_s, theta_psi = kinematics.joint_rates(robot, tool, position.hole, standoff, psi)
-    kappa = kinematics.critical_rates(robot, tool, position.hole, standoff, psi)
+    theta_s, theta_psi = joint_rates(Drilling(robot, tool, position.hole), standoff, psi)
+    kappa = kappa_of(*joint_rates(Drilling(robot, tool, position.hole), standoff, psi))
     still = theta_s + kappa * theta_psi
     assert np.nanmax(np.abs(still) / (1 + np.abs(theta_s))) < 1e-12
 
 
 def test_rates_out_of_reach_are_nan(robot, tool):
     far = Hole("far", np.array([3.0, 0.0, 0.5]), np.array([1.0, 0.0, 0.0]), 0.01)
-    assert np.isnan(kinematics.joint_rates(robot, tool, far, 0.0, 0.0)).all()
-    assert np.isnan(kinematics.critical_rates(robot, tool, far, 0.0, 0.0)).all()
+    assert np.isnan(joint_rates(Drilling(robot, tool, far), 0.0, 0.0)).all()
+    assert np.isnan(kappa_of(*joint_rates(Drilling(robot, tool, far), 0.0, 0.0))).all()

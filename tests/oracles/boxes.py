@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joints_along, outward_rates
 
 __all__ = ["POINTS", "leg"]
@@ -18,11 +19,11 @@ def leg(drilled, posture, psi_t, slope):
     branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)
     s = np.linspace(0, hole.depth, POINTS)
     psi = psi_t + slope * s
-    joints = joints_along(robot, tool, hole, branch, s, psi)
+    joints = joints_along(Drilling(robot, tool, hole), branch, s, psi)
     if np.isnan(joints).any() or np.abs(np.diff(joints, axis=0)).max() > 0.3:
         return None
     sign = np.array(robot.arm.sign)
-    rates = outward_rates(robot, tool, hole, branch, s, psi, np.full(POINTS, slope)) * sign
+    rates = outward_rates(Drilling(robot, tool, hole), branch, s, psi, np.full(POINTS, slope)) * sign
     moving = np.where(np.abs(rates) > NIL, np.sign(rates), 0.0)
     turns, first = np.zeros(6, int), np.zeros(6)
     for i in range(6):

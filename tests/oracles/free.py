@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 
 
 def rates_at(robot, tool, hole, branch, standoff, psi):
     """theta_s and theta_psi of one branch, each (..., 6)."""
-    theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, np.full(np.shape(psi), standoff), psi)
+    theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), np.full(np.shape(psi), standoff), psi)
     return theta_s[..., branch, :], theta_psi[..., branch, :]
 
 

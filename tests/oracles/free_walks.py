@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import joints_along
 
 __all__ = ["deepest_of_walks", "walked"]
@@ -28,7 +28,7 @@ def _slopes(theta_s, theta_psi, sigma, min_rate, steepest):
 
 
 def _rates(drilled, branch, s, psi):
-    theta_s, theta_psi = kinematics.joint_rates(drilled.robot, drilled.tool, drilled.hole, s, psi)
+    theta_s, theta_psi = joint_rates(Drilling(drilled.robot, drilled.tool, drilled.hole), s, psi)
     return theta_s[:, branch], theta_psi[:, branch]
 
 
@@ -47,7 +47,7 @@ def walked(rng, drilled, branch, psi_t, sigma, step, longest):
         slope = least + share[at] * (most - least)
         psi_end = psi[at] + step * slope
         theta_s, theta_psi = _rates(drilled, branch, s_at + step, psi_end)
-        joints = joints_along(drilled.robot, drilled.tool, drilled.hole, branch, s_at + step, psi_end)
+        joints = joints_along(Drilling(drilled.robot, drilled.tool, drilled.hole), branch, s_at + step, psi_end)
         with np.errstate(invalid="ignore"):
             keeps = (sigma[at] * (theta_s + slope[:, None] * theta_psi) >= min_rate).all(axis=1)
             turns = np.ceil((limits.lower - joints) / (2 * np.pi))
@@ -64,7 +64,7 @@ def deepest_of_walks(rng, drilled, branch, *, spins, tries, step, longest):
     """The deepest pair of legs out of one spin at the target that random walks find on a branch [m]."""
     bound = drilled.settings.psi_bound or np.pi
     psi_t = np.repeat(rng.uniform(-bound, bound, spins), tries)
-    joints = joints_along(drilled.robot, drilled.tool, drilled.hole, branch, np.zeros(psi_t.size), psi_t)
+    joints = joints_along(Drilling(drilled.robot, drilled.tool, drilled.hole), branch, np.zeros(psi_t.size), psi_t)
     limits = drilled.robot.limits
     with np.errstate(invalid="ignore"):
         turns = np.ceil((limits.lower - joints) / (2 * np.pi))

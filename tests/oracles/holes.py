@@ -13,6 +13,7 @@ from zerorev.model.job import Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 
 __all__ = ["Drilled", "hostile_hole", "random_hole"]
 
@@ -34,6 +35,11 @@ class Drilled:
     def all(self):
         """Robot, tool, hole, settings."""
         return self.robot, self.tool, self.hole, self.settings
+
+    @property
+    def both(self):
+        """Robot, tool and hole as one, and the settings."""
+        return Drilling(self.robot, self.tool, self.hole), self.settings
 
     def deep(self, depth):
         """The same with another stroke [m]."""

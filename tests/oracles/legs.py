@@ -12,6 +12,7 @@ import numpy as np
 
 from zerorev.kernels import legs as kernels
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 
 DENSE = 2001
 
@@ -55,7 +56,7 @@ def trace(robot, tool, hole, branch, psi_t, slope, samples=DENSE):
     """The leg, or None where it cannot be followed to its end."""
     standoff = np.linspace(0.0, hole.depth, samples)
     psi = psi_t + slope * standoff
-    theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, standoff, psi)
+    theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), standoff, psi)
     rates = (theta_s + slope * theta_psi)[:, branch]
     poses = kinematics.tcp_pose(hole, standoff, psi) @ np.linalg.inv(tool.T_flange_tcp)
     joints = kinematics.inverse(robot, poses)[:, branch]
@@ -111,7 +112,7 @@ def judge_slopes(robot, tool, hole, branch, psi_t, slopes, sense, keep, at_targe
     """`judge` of many slopes by the pointwise rule, out of reach where margin is -inf."""
     standoff = np.linspace(0.0, hole.depth, nodes)
     psi = psi_t + slopes[:, None] * standoff
-    theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, np.broadcast_to(standoff, psi.shape), psi)
+    theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), np.broadcast_to(standoff, psi.shape), psi)
     rates = (theta_s + slopes[:, None, None, None] * theta_psi)[:, :, branch]
     poses = kinematics.tcp_pose(hole, standoff, psi) @ np.linalg.inv(tool.T_flange_tcp)
     joints = kinematics.inverse(robot, poses)[:, :, branch]

@@ -8,6 +8,7 @@ import numpy as np
 
 import zerorev as zr
 from zerorev.model.proof_tree import Claim, ProofTree
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.proof import prove
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
@@ -21,7 +22,9 @@ def logged(robot, tool, hole, min_rate, boxes=100_000):
     """The best motion of a hole, and the tree that proves it."""
     settings = zr.Settings(min_rate=min_rate)
     trees = []
-    proof = prove(Problem(robot, tool, hole, settings), search(robot, tool, hole, settings), boxes, log=trees)
+    proof = prove(
+        Problem(Drilling(robot, tool, hole), settings), search(Drilling(robot, tool, hole), settings), boxes, log=trees
+    )
     return proof.best, trees[-1]
 
 

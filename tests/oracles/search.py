@@ -13,6 +13,7 @@ import numpy as np
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.evaluation import evaluate
 
 FULL_TURN = 2 * np.pi
@@ -71,7 +72,7 @@ def trace_legs(robot, tool, hole, psi_t, twist, *, nodes=33):
     for k, target in enumerate(psi_t):
         psi = target + twist[:, None] * share
         slope = (twist / hole.depth)[:, None, None, None]
-        theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, np.broadcast_to(standoff, psi.shape), psi)
+        theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), np.broadcast_to(standoff, psi.shape), psi)
         rates = np.moveaxis(theta_s + slope * theta_psi, 1, -1)  # (L, 8, 6, nodes)
         joints = kinematics.inverse(robot, kinematics.tcp_pose(hole, standoff, psi) @ T_tcp_flange)
         runs[k] = np.isfinite(rates).all(axis=(2, 3)) & np.isfinite(joints).all(axis=(1, 3))
@@ -206,7 +207,7 @@ def least_rate(robot, tool, hole, branch, profile, nodes=400):
     slopes = profile.twist_rate
     rates = []
     for slope, sense in zip(slopes, (-1.0, 1.0), strict=True):
-        theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, standoff, profile.psi[1] + slope * standoff)
+        theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), standoff, profile.psi[1] + slope * standoff)
         rates.append(sense * (theta_s + slope * theta_psi)[:, branch])
     rates = np.concatenate(rates)
     return float((rates * np.sign(rates.sum(axis=0))).min())

@@ -10,9 +10,10 @@ import numpy as np
 from oracles import legs as twin
 from zerorev.files.io import read_robot, read_tool, robot_names
 from zerorev.kernels import field, leg_search, legs
+from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
-from zerorev.search.problem import Asked
+from zerorev.motion.drilling import Drilling, joint_rates
 
 ROBOTS = [read_robot(name) for name in robot_names()]
 TOOL = read_tool("thesis_drill")
@@ -23,7 +24,10 @@ LEAST_RATE = np.deg2rad(1e-4)
 
 def asked(robot, hole, *, min_rate=LEAST_RATE, mean_rule=False, turn_inside=False, limits=True, bound=0.0):
     low, high = (robot.limits.lower, robot.limits.upper) if limits else (np.full(6, -np.inf), np.full(6, np.inf))
-    return Asked(hole.depth, min_rate, mean_rule, turn_inside, low, high, 2 * np.pi / hole.depth, bound)
+    steepest = 2 * np.pi / hole.depth
+    return Constraints(
+        low, high, min_rate, bound, steepest, depth=hole.depth, mean_rule=mean_rule, turn_inside=turn_inside
+    )
 
 
 @dataclass(frozen=True)
@@ -38,7 +42,7 @@ class Start:
 
     @property
     def plane(self):
-        return kinematics.twist_plane(self.robot, TOOL, self.hole)
+        return Drilling(self.robot, TOOL, self.hole).plane
 
     def traced(self, nodes, branch=None):
         """Rows of the leg, or None where it cannot be run."""
@@ -54,8 +58,8 @@ class Start:
         """Principal angles, critical rates, and signs of theta_psi."""
         pose = kinematics.tcp_pose(self.hole, 0.0, self.psi_t) @ np.linalg.inv(TOOL.T_flange_tcp)
         joints = kinematics.inverse(self.robot, pose)[self.branch]
-        _, theta_psi = kinematics.joint_rates(self.robot, TOOL, self.hole, 0.0, self.psi_t)
-        kappa = kinematics.critical_rates(self.robot, TOOL, self.hole, 0.0, self.psi_t)[self.branch]
+        theta_s, theta_psi = joint_rates(Drilling(self.robot, TOOL, self.hole), 0.0, self.psi_t)
+        kappa = -theta_s[self.branch] / theta_psi[self.branch]
         return joints, kappa, np.sign(theta_psi[self.branch])
 
     def best_leg(self, side, wanted, mode=legs.TRAVEL, keep=ALL_JOINTS, nodes=field.BLOCK):

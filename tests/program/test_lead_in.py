@@ -6,6 +6,7 @@ from scipy.optimize import brentq
 
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joints_along
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.export import export
@@ -17,13 +18,13 @@ def along(plan, hole, back):
     profile = hole.motion.profile
     s = profile.standoff[0] + back
     return joints_along(
-        plan.robot, plan.tool, hole.hole, hole.motion.branch, s, profile.psi[0] + profile.twist_rate[0] * back
+        Drilling(plan.robot, plan.tool, hole.hole), hole.motion.branch, s, profile.psi[0] + profile.twist_rate[0] * back
     )
 
 
 def test_full_length(published, plan_of):
     plan = plan_of(published(1))
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 5e-3)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 5e-3)
     assert found.length == 5e-3
     assert found.findings == ()
     wanted = tcp_pose(plan.holes[0].hole, 55e-3, np.deg2rad(14.1646 + 20.1034 / 10))
@@ -35,7 +36,7 @@ def test_full_length(published, plan_of):
 
 def test_none_asked_for(published, plan_of):
     plan = plan_of(published(1))
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 0.0)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 0.0)
     assert (found.length, found.findings) == (0.0, ())
     np.testing.assert_array_equal(found.joints, plan.holes[0].motion.joints[0])
 
@@ -68,7 +69,7 @@ def turning(published, planned, plan_of):
 @pytest.mark.parametrize("before_mm", [4.0, 2.0, 0.5])
 def test_shortened_where_a_joint_would_turn_the_other_way(before_mm, turning, krl):
     plan = turning(before_mm * 1e-3)
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 5e-3)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 5e-3)
     assert found.length * 1e3 == pytest.approx(KEPT * before_mm, abs=1.1e-3)
     (finding,) = found.findings
     assert (finding.level, finding.kind, finding.hole) == ("warning", "lead_in", "position 3")
@@ -86,7 +87,7 @@ def test_shortened_where_a_joint_would_turn_the_other_way(before_mm, turning, kr
 
 def test_just_at_the_turning_point_there_is_none(turning, krl):
     plan = turning(0.0)
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 5e-3)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 5e-3)
     assert found.length == 0
     assert len(found.findings) == 1
     moves = krl.read(export(plan).text).moves
@@ -102,7 +103,7 @@ def test_shortened_at_a_joint_limit(published, plan_of, spoil):
     upper = limits.upper.copy()
     upper[3] = limit
     robot = spoil(plan.robot, limits=spoil(limits, upper=upper))
-    found = find_lead_in(robot, plan.tool, hole, 5e-3)
+    found = find_lead_in(Drilling(robot, plan.tool, hole.hole), hole.motion, 5e-3)
     assert found.length * 1e3 == pytest.approx(KEPT * 2.0, abs=1.1e-3)
     assert "A4 reaches its limit" in found.findings[0].message
 
@@ -113,7 +114,7 @@ def test_shortened_at_the_edge_of_reach(planned, plan_of):
     plan = plan_of(
         planned(hole, Profile.straight(0.01, *np.deg2rad([3, 0, -3])), near=(116.5, -91.7, -75.4, 80.4, 115.0, -15.7))
     )
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 0.4)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 0.4)
     assert "the arm is out of reach" in found.findings[0].message
     edge = along(plan, plan.holes[0], found.length / KEPT + np.array([0.0, 2e-6]))
     assert np.isfinite(edge[0]).all()
@@ -124,6 +125,6 @@ def test_a_joint_that_rests_all_along_may_rest_in_the_lead_in(published, planned
     # position 2 at a constant 180 deg: joint 4 does not turn (theory §6)
     hole = published(2).hole
     plan = plan_of(planned(hole, Profile.straight(0.02, np.pi, np.pi, np.pi), near=(-78.7, -87, 87.7, 0, 89.3, 101.3)))
-    found = find_lead_in(plan.robot, plan.tool, plan.holes[0], 2e-3)
+    found = find_lead_in(Drilling(plan.robot, plan.tool, plan.holes[0].hole), plan.holes[0].motion, 2e-3)
     assert found.joints[3] == pytest.approx(plan.holes[0].motion.joints[0, 3], abs=1e-9)
     assert not any("A4" in finding.message for finding in found.findings)

@@ -8,6 +8,7 @@ import pytest
 from zerorev.errors import NotExportableError
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joints_along
 from zerorev.program.export import export
 from zerorev.program.krl.read import read_krl
@@ -26,7 +27,9 @@ def fastest(plan, leg):
     profile = hole.motion.profile
     (s0, s1), (p0, p1) = profile.standoff[leg : leg + 2], profile.psi[leg : leg + 2]
     x = np.linspace(0, 1, 5001)
-    joints = joints_along(plan.robot, plan.tool, hole.hole, hole.motion.branch, s0 + x * (s1 - s0), p0 + x * (p1 - p0))
+    joints = joints_along(
+        Drilling(plan.robot, plan.tool, hole.hole), hole.motion.branch, s0 + x * (s1 - s0), p0 + x * (p1 - p0)
+    )
     rates = np.abs(np.diff(joints, axis=0)).max(axis=0) / (abs(s1 - s0) / 5000)
     share = rates / plan.robot.limits.speed
     return share.max(), int(share.argmax())

@@ -20,7 +20,8 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Plan
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import critical_rates as kappa
+from zerorev.motion.critical import kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.report import figures
 from zerorev.report.figures import FIGURES, critical_rates, file_stems, joint_angles, twist_plane, write_figures
 from zerorev.report.figures.plane import SLATE
@@ -209,7 +210,8 @@ class TestCriticalRates:
         for i, name in enumerate(published.robot.joint_names):
             x, y = line(axes, name).get_data()
             sample = np.isfinite(y) & (np.abs(y) < 1e3)
-            expected = kappa(published.robot, published.tool, hole.hole, 0.0, np.deg2rad(x[sample]))[:, 4, i]
+            drilling = Drilling(published.robot, published.tool, hole.hole)
+            expected = kappa_of(*joint_rates(drilling, 0.0, np.deg2rad(x[sample])))[:, 4, i]
             np.testing.assert_allclose(y[sample], np.rad2deg(expected) * 1e-3, rtol=1e-9)
 
     def test_no_line_joins_the_ends_of_an_asymptote(self, published):
@@ -259,7 +261,7 @@ class TestWriteFigures:
         robot = read_robot(robot_name)
         hole = Hole("h", np.array([0.6, 0.2, 0.8]), np.array([1.0, 0, 0]), 0.02)
         profile = Profile.straight(0.02, *np.deg2rad([10, -5, -30]))
-        answers = [_evaluated(robot, tool, hole, profile, branch) for branch in range(8)]
+        answers = [_evaluated(Drilling(robot, tool, hole), profile, branch) for branch in range(8)]
         plan = Plan(robot, tool, Settings(), tuple([found for found in answers if found][:1]))
         assert len(write_figures(plan, tmp_path)) == 3
 

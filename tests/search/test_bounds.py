@@ -15,10 +15,11 @@ from zerorev.kernels import bound_boxes as kernels
 from zerorev.kernels import bound_legs, bound_nodes, bound_tree
 from zerorev.kernels.bound_multipliers import LEG, MOST_TERMS, TERM
 from zerorev.kernels.intervals import DERIVATIVE, LANES
-from zerorev.motion import kinematics
+from zerorev.kernels.layout import BoundRules
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
-from zerorev.search.bounds.tree import Rules, Search, _room, model_limits
+from zerorev.search.bounds.tree import Search, _room, model_limits
 from zerorev.search.exact import search
 from zerorev.search.problem import Problem
 
@@ -31,7 +32,9 @@ def rules_of(drilled, *, min_rate, most_cost=80.0, looks=8):
     lower, upper = model_limits(robot)
     weights = np.array(settings.reversal_weights)
     bound = settings.psi_bound or 0.0
-    return Rules(hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), looks)
+    return BoundRules(
+        hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), looks
+    )
 
 
 def looks_at(looks):
@@ -46,7 +49,7 @@ def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, looks=8):
     """What is known of one box, and its row; None where no leg of it may exist."""
     robot, tool, hole, _ = drilled.all
     rules = rules_of(drilled, min_rate=min_rate, looks=looks)
-    tree = Search(robot.arm, kinematics.twist_plane(robot, tool, hole), rules, [posture], 1.0, 0.0)
+    tree = Search(robot.arm, Drilling(robot, tool, hole).plane, rules, [posture], 1.0, 0.0)
     legs, known, _, _, room, _ = _room()
     legs[0, kernels.LOW], legs[0, kernels.HIGH] = slopes
     model = tree.models[posture]
@@ -112,7 +115,7 @@ def check_weights(rng, drilled):
     terms, of_travel = np.zeros((MOST_TERMS, TERM)), float(rng.integers(2))
     for term in terms[: rng.integers(1, MOST_TERMS + 1)]:
         term[:] = rng.integers(2), rng.integers(6), rng.integers(looks), rng.choice([-1, 1]), rng.exponential() * 0.1
-    plane = kinematics.twist_plane(robot, tool, hole)
+    plane = Drilling(robot, tool, hole).plane
     model = Search(robot.arm, plane, rules, [posture], 1.0, 0.0).models[posture]
 
     def row_of(psi, slopes):
@@ -142,7 +145,7 @@ def check_weights(rng, drilled):
             for _, joint, look, way, multiplier in terms[terms[:, LEG] == leg]:
                 i, j = int(joint), int(look)
                 s = kernels.share(looks, 0, j) * hole.depth
-                theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, s, psi_t + slope * s)
+                theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), s, psi_t + slope * s)
                 branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)
                 rate = (theta_s + slope * theta_psi)[branch, i] * robot.arm.sign[i]
                 spare = way * rate - (rules.min_rate or -boxes.NIL)
@@ -179,7 +182,7 @@ class TestABox:
             slope = twist / hole.depth
             rules = rules_of(drilled, min_rate=1.0)
             for posture in range(4):
-                tree = Search(robot.arm, kinematics.twist_plane(robot, tool, hole), rules, [posture], 1.0, 0.0)
+                tree = Search(robot.arm, Drilling(robot, tool, hole).plane, rules, [posture], 1.0, 0.0)
                 legs, known, _, _, room, _ = _room()
                 legs[0, kernels.LOW] = legs[0, kernels.HIGH] = slope
                 model = tree.models[posture]
@@ -191,7 +194,7 @@ class TestABox:
                     continue
                 for j, share in enumerate(looks_at(8)):
                     s = share * hole.depth
-                    theta_s, theta_psi = kinematics.joint_rates(robot, tool, hole, s, psi + slope * s)
+                    theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), s, psi + slope * s)
                     branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)
                     rate = (theta_s + slope * theta_psi)[branch] * sign
                     for i in range(6):
@@ -224,7 +227,7 @@ class TestABox:
 
 def problem_of(name, **changes):
     job = read_job(CASES / f"{name}.yaml")
-    return Problem(job.robot, job.tool, job.holes[0], replace(job.settings, **changes))
+    return Problem(Drilling(job.robot, job.tool, job.holes[0]), replace(job.settings, **changes))
 
 
 class TestTheThesisPositions:
@@ -233,8 +236,8 @@ class TestTheThesisPositions:
     def test_are_proven(self, robot, tool, target, depth, rate):
         """To 0.05 deg, and within the budget of a plan."""
         hole = zr.Hole("1", target=target, direction=[1, 0, 0], depth=depth)
-        problem = Problem(robot, tool, hole, zr.Settings(min_rate=float(np.deg2rad(rate))))
-        best = search(robot, tool, hole, problem.settings)
+        problem = Problem(Drilling(robot, tool, hole), zr.Settings(min_rate=float(np.deg2rad(rate))))
+        best = search(Drilling(robot, tool, hole), problem.settings)
         proof = prove(problem, best, BUDGET)
         assert proof.optimality.proven
         assert proof.optimality.reversals_at_least == 0
@@ -243,7 +246,7 @@ class TestTheThesisPositions:
 
     def test_are_found_from_nothing(self, robot, tool):
         hole = zr.Hole("1", target=THESIS[0][0], direction=[1, 0, 0], depth=0.05)
-        problem = Problem(robot, tool, hole, zr.Settings(min_rate=0.0))
+        problem = Problem(Drilling(robot, tool, hole), zr.Settings(min_rate=0.0))
         proof = prove(problem, None, BUDGET)
         assert proof.best.reversals == 0
         assert np.rad2deg(proof.best.score.travel) == pytest.approx(102.031, abs=0.05)
@@ -283,12 +286,12 @@ class TestSoundness:
         for seed in range(60):
             drilled = holes.random_hole(seed, narrowed=seed % 4 == 0)
             drilled = drilled.deep(min(drilled.hole.depth, 0.06))
-            problem = Problem(*drilled.all)
-            best = search(*drilled.all)
+            problem = Problem(*drilled.both)
+            best = search(*drilled.both)
             if best is None or not best.keeps_threshold:
                 continue
             rules = rules_of(drilled, min_rate=problem.settings.min_rate * (1 - 2e-6), most_cost=30.0)
-            tree = Search(problem.robot.arm, problem.plane, rules, [0, 1, 2, 3], 4 * np.pi, 0.0)
+            tree = Search(problem.drilling.robot.arm, problem.plane, rules, [0, 1, 2, 3], 4 * np.pi, 0.0)
             while tree.advance(6000) == bound_tree.CANDIDATE:
                 pass
             value = bound_nodes.BIG * problem.order.reversals(best) + best.score.travel
@@ -298,14 +301,14 @@ class TestSoundness:
 
     def test_an_impossible_hole_is_proven_to_be_one(self, robot, tool):
         hole = zr.Hole("far", target=[2.0, 0.0, 0.5], direction=[1, 0, 0], depth=0.02)
-        proof = prove(Problem(robot, tool, hole, zr.Settings()), None, BUDGET)
+        proof = prove(Problem(Drilling(robot, tool, hole), zr.Settings()), None, BUDGET)
         assert proof.best is None
         assert proof.optimality.proven
 
     def test_a_bound_on_the_spin_and_a_branch_are_kept(self, robot, tool):
         hole = zr.Hole("1", target=THESIS[0][0], direction=[1, 0, 0], depth=0.05, branch=4)
         settings = zr.Settings(psi_bound=float(np.deg2rad(20)))
-        proof = prove(Problem(robot, tool, hole, settings), None, BUDGET)
+        proof = prove(Problem(Drilling(robot, tool, hole), settings), None, BUDGET)
         if proof.best is not None:
             assert proof.best.branch == 4
             assert np.abs(proof.best.profile.psi).max() <= settings.psi_bound + 1e-9
@@ -315,7 +318,7 @@ class TestTheDeepestStroke:
     @pytest.mark.parametrize(("target", "depth"), THESIS)
     def test_is_bounded(self, robot, tool, target, depth):
         hole = zr.Hole("1", target=target, direction=[1, 0, 0], depth=depth)
-        problem = Problem(robot, tool, hole, zr.Settings())
+        problem = Problem(Drilling(robot, tool, hole), zr.Settings())
         deepest = zr.deepest_stroke(robot, tool, hole).depth
         bound = bound_depth(problem, deepest, BUDGET)
         assert bound.deeper is None

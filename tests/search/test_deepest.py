@@ -9,6 +9,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.placement.tool_offset import with_offset
@@ -63,8 +64,8 @@ def test_as_deep_as_theory_7_has_it_and_proven(robot, tool, figures, bounded):
 def test_the_exact_search_finds_zero_just_above_and_none_just_below(robot, tool, figures):
     hole = hole_at(figures[0])
     depth = deepest_stroke(robot, tool, hole, OFF).depth
-    assert search(robot, tool, replace(hole, depth=0.995 * depth), OFF).reversals == 0
-    assert search(robot, tool, replace(hole, depth=1.01 * depth), OFF).reversals > 0
+    assert search(Drilling(robot, tool, replace(hole, depth=0.995 * depth)), OFF).reversals == 0
+    assert search(Drilling(robot, tool, replace(hole, depth=1.01 * depth)), OFF).reversals > 0
 
 
 def test_every_joint_keeps_the_threshold(robot, tool):

@@ -18,6 +18,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.joint_path import joints_along
 from zerorev.search.exact import can_run, search
@@ -65,7 +66,7 @@ def found_at(robot, tool):
     def find(position, settings):
         key = position.name, settings
         if key not in answers:
-            answers[key] = search(robot, tool, position.hole, settings)
+            answers[key] = search(Drilling(robot, tool, position.hole), settings)
         return answers[key]
 
     return find
@@ -123,7 +124,7 @@ class TestPublishedPositions:
         assert -np.pi < found_at(position, DEFAULT).profile.psi[1] <= np.pi
 
     def test_two_runs_are_bit_identical(self, robot, tool, found_at, position):
-        again = search(robot, tool, position.hole, DEFAULT)
+        again = search(Drilling(robot, tool, position.hole), DEFAULT)
         np.testing.assert_array_equal(again.profile.psi, found_at(position, DEFAULT).profile.psi)
         assert again.score.travel == found_at(position, DEFAULT).score.travel
 
@@ -138,7 +139,7 @@ class TestReversalsBetweenSamples:
         legs = []
         for outer in (spins[0], spins[2]):
             psi = spins[1] + (outer - spins[1]) * standoff / hole.depth
-            legs.append(joints_along(robot, tool, hole, branch, standoff, psi))
+            legs.append(joints_along(Drilling(robot, tool, hole), branch, standoff, psi))
         plunge, retract = legs
         retract = retract + plunge[0] - retract[0]
         return np.concatenate([plunge[::-1], retract[1:]])
@@ -245,7 +246,7 @@ class TestAgainstEveryPlanOfAGrid:
     """Theory §3: all plans of a grid of (psi_s, psi_t, psi_e) on eight branches."""
 
     def compare(self, robot, tool, hole, settings, spins):
-        found = search(robot, tool, hole, settings)
+        found = search(Drilling(robot, tool, hole), settings)
         best = twin.best_on_grid(robot, tool, hole, spins=spins, weights=settings.reversal_weights)
         if best is None:
             return
@@ -254,7 +255,7 @@ class TestAgainstEveryPlanOfAGrid:
         assert cost <= best.cost + 1e-9
         if cost > best.cost - 1e-9:
             assert found.score.travel <= best.travel * (1 + 1e-4)
-        assert can_run(robot, tool, hole, settings)
+        assert can_run(Drilling(robot, tool, hole), settings)
         assert verify_hole(robot, tool, settings, as_plan(robot, tool, hole, found), samples=8000).failures == ()
 
     @pytest.mark.parametrize("seed", ORDINARY)
@@ -286,7 +287,7 @@ class TestPlantedOptimum:
         joints = best.evaluation.motion.joints
         spare = np.random.default_rng(seed).uniform(1e-3, 1e-2, (2, 6))
         narrow = with_limits(robot, joints.min(axis=0) - spare[0], joints.max(axis=0) + spare[1])
-        found = search(narrow, tool, position.hole, DEFAULT)
+        found = search(Drilling(narrow, tool, position.hole), DEFAULT)
         assert found is not None
         assert found.branch == best.branch
         assert travel_deg(found) == pytest.approx(travel_deg(best), abs=1e-2)
@@ -296,7 +297,7 @@ class TestPlantedOptimum:
         joints = best.evaluation.motion.joints
         upper = robot.limits.upper.copy()
         upper[3] = joints[:, 3].max() - np.deg2rad(4)
-        found = search(with_limits(robot, robot.limits.lower, upper), tool, positions[0].hole, DEFAULT)
+        found = search(Drilling(with_limits(robot, robot.limits.lower, upper), tool, positions[0].hole), DEFAULT)
         assert found.score.reversals == 0
         assert found.evaluation.motion.joints[:, 3].max() <= upper[3]
         assert found.score.travel > best.score.travel
@@ -310,25 +311,25 @@ class TestWhereJointsHaveToReverse:
         return replace(positions[0].hole, depth=self.DEEP)
 
     def test_the_fewest_do(self, robot, tool, deep):
-        found = search(robot, tool, deep, NO_THRESHOLD)
+        found = search(Drilling(robot, tool, deep), NO_THRESHOLD)
         best = twin.best_on_grid(robot, tool, deep, spins=36)
         assert 0 < found.score.reversals <= best.cost
 
     def test_events_say_which_and_where(self, robot, tool, deep):
-        score = search(robot, tool, deep, DEFAULT).score
+        score = search(Drilling(robot, tool, deep), DEFAULT).score
         assert len(score.events) == score.reversals
         for joint, count in enumerate(score.reversals_per_joint, start=1):
             assert sum(event.joint == joint for event in score.events) == count
 
     def test_weights_change_which_joint_reverses(self, robot, tool, deep):
-        plain = search(robot, tool, deep, NO_THRESHOLD).score.reversals_per_joint
+        plain = search(Drilling(robot, tool, deep), NO_THRESHOLD).score.reversals_per_joint
         weights = np.where(np.array(plain) > 0, 10.0, 1.0)
-        spared = search(robot, tool, deep, replace(NO_THRESHOLD, reversal_weights=tuple(weights)))
+        spared = search(Drilling(robot, tool, deep), replace(NO_THRESHOLD, reversal_weights=tuple(weights)))
         assert spared.score.reversals_per_joint != plain
         assert np.dot(weights, spared.score.reversals_per_joint) < np.dot(weights, plain)
 
     def test_the_joints_that_do_not_keep_the_threshold(self, robot, tool, deep):
-        found = search(robot, tool, deep, DEFAULT)
+        found = search(Drilling(robot, tool, deep), DEFAULT)
         steady = np.array(found.score.reversals_per_joint) == 0
         assert found.keeps_threshold
         assert found.score.min_rate[steady].min() >= DEFAULT.min_rate * (1 - 1e-6)
@@ -347,7 +348,7 @@ class TestFlatValley:
     def test_few_points_a_leg_do_not_say_where_it_is_lowest(self):
         """Random hole 1072: on 24 points a leg the bottom seems to lie 0.06 deg off, 0.014 deg of travel above it."""
         case = drilled(random_place(1072), 0.014331521522499011)
-        found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         assert found.reversals == 0
         # what SciPy's evolution reached from within 2 deg of the answer that was found on 24 points
         peer = Profile.straight(case.hole.depth, *np.deg2rad([161.4052, 166.6618, 190.2259]))
@@ -370,7 +371,7 @@ class TestBetweenTheNodes:
     def test_a_dip_between_them_does_not_turn_the_search_away(self, seed, depth, travel):
         """All three ended with a joint that turns round and back, and so as holes where zero is not to be had."""
         case = drilled(random_place(seed), depth)
-        problem = Problem(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        problem = Problem(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         found = Valleys(problem, problem.branches).best_motion(np.ones(6, dtype=bool))
         assert found.reversals == 0
         assert travel_deg(found) < travel
@@ -379,11 +380,11 @@ class TestBetweenTheNodes:
     def test_where_joints_reverse_the_valley_is_gone_down_along_its_edge(self):
         """Random hole 1159: SciPy's evolution from within 2 deg of the answer bettered it by 0.008 deg."""
         case = drilled(random_place(1159), 0.052375893186591437)
-        found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         assert found.reversals == 5
         assert travel_deg(found) < 159.87160
         there = mirrored(case)
-        mirror = search(there.robot, there.tool, there.hole, NO_THRESHOLD)
+        mirror = search(Drilling(there.robot, there.tool, there.hole), NO_THRESHOLD)
         np.testing.assert_allclose(mirror.profile.psi, -found.profile.psi, atol=np.deg2rad(0.01))
 
 
@@ -394,7 +395,7 @@ class TestToolThroughTheWristCentre:
         straight = tool_through_the_wrist(robot, np.deg2rad(50))
         assert kinematics.wrist_offset(robot, straight) < 1e-12
         hole = Hole("e = 0", np.array([0.5, 0.1, 0.6]), X, 0.02)
-        found = search(robot, straight, hole, NO_THRESHOLD)
+        found = search(Drilling(robot, straight, hole), NO_THRESHOLD)
         best = twin.best_on_grid(robot, straight, hole, spins=36)
         assert found.score.reversals_per_joint == (1, 1, 1, 0, 0, 0)
         assert found.score.reversals <= best.cost
@@ -405,17 +406,17 @@ class TestBranches:
         hole = positions[0].hole
         travels = []
         for branch in (4, 5, 0):
-            found = search(robot, tool, replace(hole, branch=branch), NO_THRESHOLD)
+            found = search(Drilling(robot, tool, replace(hole, branch=branch)), NO_THRESHOLD)
             assert found.branch == branch
             travels.append((found.score.reversals, travel_deg(found)))
         assert min(travels)[1] == pytest.approx(LEAST_TRAVEL["position 1"][0], abs=0.01)
 
     def test_a_branch_that_cannot_reach_has_no_motion(self, robot, tool, positions):
         hole = positions[1].hole
-        reached = {b for b in range(8) if can_run(robot, tool, replace(hole, branch=b), DEFAULT)}
+        reached = {b for b in range(8) if can_run(Drilling(robot, tool, replace(hole, branch=b)), DEFAULT)}
         assert reached == {0, 1, 2, 3, 4, 5}
         for branch in (6, 7):
-            assert search(robot, tool, replace(hole, branch=branch), DEFAULT) is None
+            assert search(Drilling(robot, tool, replace(hole, branch=branch)), DEFAULT) is None
 
 
 class TestSymmetry:
@@ -425,7 +426,7 @@ class TestSymmetry:
         position, flip = positions[n], np.array([1.0, -1.0, 1.0])
         hole = position.hole
         image = replace(hole, target=hole.target * flip, direction=hole.direction * flip, psi_zero=hole.psi_zero)
-        there, here = search(robot, tool, image, DEFAULT), found_at(position, DEFAULT)
+        there, here = search(Drilling(robot, tool, image), DEFAULT), found_at(position, DEFAULT)
         assert travel_deg(there) == pytest.approx(travel_deg(here), abs=1e-3)
         np.testing.assert_allclose(there.profile.psi, -here.profile.psi, atol=1e-3)
 
@@ -438,13 +439,13 @@ class TestSymmetry:
         c, s = np.cos(np.deg2rad(turn_deg)), np.sin(np.deg2rad(turn_deg))
         R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
         turned = replace(hole, target=R @ hole.target, direction=R @ hole.direction, psi_zero=R @ hole.psi_zero)
-        there, here = search(free, tool, turned, DEFAULT), search(free, tool, hole, DEFAULT)
+        there, here = search(Drilling(free, tool, turned), DEFAULT), search(Drilling(free, tool, hole), DEFAULT)
         assert travel_deg(there) == pytest.approx(travel_deg(here), abs=1e-4)
         np.testing.assert_allclose(there.profile.psi, here.profile.psi, atol=1e-4)
 
     def test_where_psi_is_counted_from_does_not_matter(self, robot, tool, found_at, positions):
         hole = replace(positions[0].hole, psi_zero=np.array([0.0, 0.3, 1.0]))
-        assert travel_deg(search(robot, tool, hole, DEFAULT)) == pytest.approx(
+        assert travel_deg(search(Drilling(robot, tool, hole), DEFAULT)) == pytest.approx(
             travel_deg(found_at(positions[0], DEFAULT)), abs=1e-3
         )
 
@@ -452,10 +453,10 @@ class TestSymmetry:
 class TestNoMotion:
     def test_out_of_reach(self, robot, tool):
         far = Hole("far", np.array([1.5, 0.0, 0.8]), X, 0.02)
-        assert search(robot, tool, far, DEFAULT) is None
-        assert not can_run(robot, tool, far, DEFAULT)
+        assert search(Drilling(robot, tool, far), DEFAULT) is None
+        assert not can_run(Drilling(robot, tool, far), DEFAULT)
 
     def test_over_the_limits(self, robot, tool, positions):
         lower, upper = robot.limits.lower.copy(), robot.limits.upper.copy()
         lower[1], upper[1] = np.deg2rad([20, 45])
-        assert search(with_limits(robot, lower, upper), tool, positions[0].hole, DEFAULT) is None
+        assert search(Drilling(with_limits(robot, lower, upper), tool, positions[0].hole), DEFAULT) is None

@@ -14,6 +14,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.search.deepest import deepest_stroke
@@ -55,14 +56,14 @@ def proven(robot, tool, hole, profile, branch, settings):
 
 def found(robot, tool, hole, settings):
     """Profile and branch of what the search finds."""
-    motion = search_free(robot, tool, hole, settings)
+    motion = search_free(Drilling(robot, tool, hole), settings)
     return motion.profile, motion.branch
 
 
 @pytest.mark.parametrize("figures", FIGURES, ids=lambda figures: str(figures[0]))
 def test_as_deep_as_asked_for_and_proven(robot, tool, figures):
     target, asked_mm = figures
-    depth, profile, branch = deepest_free(robot, tool, hole_at(target), OFF)
+    depth, profile, branch = deepest_free(Drilling(robot, tool, hole_at(target)), OFF)
     assert depth * 1e3 >= asked_mm
     assert profile.standoff[0] == profile.standoff[-1] == pytest.approx(depth)
     proven(robot, tool, hole_at(target), profile, branch, OFF)
@@ -72,7 +73,7 @@ def test_as_deep_as_asked_for_and_proven(robot, tool, figures):
 def test_never_less_deep_than_straight_legs_that_twist_no_more(robot, tool, figures):
     straight = deepest_stroke(robot, tool, hole_at(figures[0]), FIVE)
     assert np.abs(straight.profile.twist_rate).max() <= FIVE.max_twist
-    assert deepest_free(robot, tool, hole_at(figures[0]), FIVE)[0] > straight.depth
+    assert deepest_free(Drilling(robot, tool, hole_at(figures[0])), FIVE)[0] > straight.depth
 
 
 def test_random_holes_are_never_less_deep_than_straight_and_proven(robot, tool):
@@ -85,7 +86,7 @@ def test_random_holes_are_never_less_deep_than_straight_and_proven(robot, tool):
         straight = deepest_stroke(robot, tool, hole, FIVE)
         if straight.profile is None or np.abs(straight.profile.twist_rate).max() > FIVE.max_twist:
             continue
-        depth, profile, branch = deepest_free(robot, tool, hole, FIVE)
+        depth, profile, branch = deepest_free(Drilling(robot, tool, hole), FIVE)
         assert depth >= straight.depth * (1 - 1e-3)
         proven(robot, tool, hole, profile, branch, FIVE)
         compared += 1
@@ -140,45 +141,45 @@ def test_of_347_holes_none_is_markedly_less_deep_at_12_than_at_5_deg_per_mm():
 
 def test_the_mirror_image_is_as_deep(robot, tool):
     x, y, z = FIGURES[2][0]
-    one, other = (deepest_free(robot, tool, hole_at(target), FIVE)[0] for target in ((x, y, z), (x, -y, z)))
+    one, other = (deepest_free(Drilling(robot, tool, hole_at(target)), FIVE)[0] for target in ((x, y, z), (x, -y, z)))
     assert other == pytest.approx(one, abs=1e-5)
 
 
 def test_the_threshold_is_kept_at_every_point(robot, tool):
     settings = replace(FIVE, min_rate=float(np.deg2rad(10.0)))
     target = FIGURES[0][0]
-    depth, profile, branch = deepest_free(robot, tool, hole_at(target), settings)
+    depth, profile, branch = deepest_free(Drilling(robot, tool, hole_at(target)), settings)
     score = proven(robot, tool, hole_at(target), profile, branch, settings)
     assert (score.min_rate >= settings.min_rate * (1 - 1e-6)).all()
-    assert depth < deepest_free(robot, tool, hole_at(target), FIVE)[0]
+    assert depth < deepest_free(Drilling(robot, tool, hole_at(target)), FIVE)[0]
 
 
 def test_the_spin_stays_within_its_bound(robot, tool):
     settings = replace(FIVE, psi_bound=float(np.deg2rad(40.0)))
     target = FIGURES[0][0]
-    depth, profile, branch = deepest_free(robot, tool, hole_at(target), settings)
+    depth, profile, branch = deepest_free(Drilling(robot, tool, hole_at(target)), settings)
     assert np.abs(profile.psi).max() <= settings.psi_bound + 1e-9
     proven(robot, tool, hole_at(target), profile, branch, settings)
-    assert 0 < depth < deepest_free(robot, tool, hole_at(target), FIVE)[0]
+    assert 0 < depth < deepest_free(Drilling(robot, tool, hole_at(target)), FIVE)[0]
 
 
 def test_a_limit_planted_within_the_motion_costs_depth_and_one_just_outside_costs_none(robot, tool):
     hole = hole_at(FIGURES[2][0])
-    depth, profile, branch = deepest_free(robot, tool, hole, FIVE)
+    depth, profile, branch = deepest_free(Drilling(robot, tool, hole), FIVE)
     hole = replace(hole, branch=branch)
     joints = evaluate(robot, tool, replace(hole, depth=depth), profile, branch).motion.joints
     for inset_deg, costs in ((-1.0, False), (10.0, True)):
         upper, lower = robot.limits.upper.copy(), robot.limits.lower.copy()
         upper[0], lower[0] = joints[:, 0].max() - np.deg2rad(inset_deg), joints[:, 0].min() - 0.01
         tight = replace(robot, limits=replace(robot.limits, upper=upper, lower=lower))
-        found, planted, where = deepest_free(tight, tool, hole, FIVE)
+        found, planted, where = deepest_free(Drilling(tight, tool, hole), FIVE)
         proven(tight, tool, hole, planted, where, FIVE)
         assert (found < 0.995 * depth) == costs
 
 
 def test_out_of_reach_there_is_nothing(robot, tool):
-    assert deepest_free(robot, tool, hole_at((3000, 0, 500)), FIVE) == (0.0, None, None)
-    assert search_free(robot, tool, hole_at((3000, 0, 500)), FIVE) is None
+    assert deepest_free(Drilling(robot, tool, hole_at((3000, 0, 500))), FIVE) == (0.0, None, None)
+    assert search_free(Drilling(robot, tool, hole_at((3000, 0, 500))), FIVE) is None
 
 
 @pytest.mark.parametrize("objective", ["travel", "margin", "plunge_rotation"])
@@ -208,13 +209,13 @@ def test_each_objective_is_best_at_its_own(robot, tool):
 
 def test_search_finds_zero_just_above_the_deepest_and_none_well_below(robot, tool):
     hole = hole_at(FIGURES[1][0])
-    depth = deepest_free(robot, tool, hole, FIVE)[0]
+    depth = deepest_free(Drilling(robot, tool, hole), FIVE)[0]
     profile, branch = found(robot, tool, replace(hole, depth=0.9 * depth), FIVE)
     proven(robot, tool, hole, profile, branch, FIVE)
     # nearer to it there is at least the deepest motion cut short
-    nearly = best_motion(robot, tool, replace(hole, depth=0.99 * depth), replace(FIVE, legs="free"))
+    nearly = best_motion(Drilling(robot, tool, replace(hole, depth=0.99 * depth)), replace(FIVE, legs="free"))
     proven(robot, tool, hole, nearly.profile, nearly.branch, FIVE)
-    assert search_free(robot, tool, replace(hole, depth=1.15 * depth), FIVE) is None
+    assert search_free(Drilling(robot, tool, replace(hole, depth=1.15 * depth)), FIVE) is None
 
 
 def test_where_the_threshold_cannot_be_kept_the_greatest_margin_is_found(robot, tool):
@@ -226,7 +227,7 @@ def test_where_the_threshold_cannot_be_kept_the_greatest_margin_is_found(robot, 
 
 
 def test_only_the_branch_asked_for_is_searched(robot, tool):
-    _, _, branch = deepest_free(robot, tool, hole_at(FIGURES[0][0], branch=3), FIVE)
+    _, _, branch = deepest_free(Drilling(robot, tool, hole_at(FIGURES[0][0], branch=3)), FIVE)
     assert branch == 3
 
 

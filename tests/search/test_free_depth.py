@@ -10,6 +10,7 @@ import pytest
 import zerorev as zr
 from oracles import free_walks, holes
 from zerorev.model.hole import Hole
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.free_deepest import CLOSEST, deepest_free
 from zerorev.search.optimum import deepest_as_drilled
@@ -27,7 +28,7 @@ CLOSE = {  # target [m]: by how much more than the stroke that is found the boun
 
 def unknowing(drilled, depth, boxes=BUDGET):
     """The bound of a hole of which only a shallower stroke is known [m]."""
-    return bound_free_depth(Problem(*drilled.all), LESS * depth, boxes).at_most
+    return bound_free_depth(Problem(*drilled.both), LESS * depth, boxes).at_most
 
 
 def free(seed):
@@ -39,7 +40,7 @@ def free(seed):
 
 def evaluated(drilled, *effort):
     """The deepest stroke that is found [m]; its motion has no reversal, keeps the threshold and the cap."""
-    found, profile, branch = deepest_free(*drilled.all, *effort)
+    found, profile, branch = deepest_free(*drilled.both, *effort)
     if profile is None:
         return 0.0
     hole = replace(drilled.hole, depth=found)
@@ -62,7 +63,7 @@ def check_against_very_many_segments(seed):
     """On holes whose sets of spins, which nobody evaluates, were up to half deeper than the bound."""
     drilled = holes.random_hole(seed, legs="free", narrowed=seed % 4 == 0)
     usual, inner = evaluated(drilled), evaluated(drilled, CLOSEST)
-    assert inner <= bound_free_depth(Problem(*drilled.all), LESS * inner, BUDGET).at_most
+    assert inner <= bound_free_depth(Problem(*drilled.both), LESS * inner, BUDGET).at_most
     assert usual >= 0.95 * inner > 0.0
 
 
@@ -98,19 +99,21 @@ class TestBound:
     def test_is_close_at_the_thesis_targets(self, target, share):
         hole = Hole("one", target, [1, 0, 0], 0.02)
         settings = zr.Settings(legs="free", proof_boxes=BUDGET)
-        deepest = deepest_as_drilled(zr.read_robot("kuka_kr6_r700_2"), zr.read_tool("thesis_drill"), hole, settings)
+        deepest = deepest_as_drilled(
+            Drilling(zr.read_robot("kuka_kr6_r700_2"), zr.read_tool("thesis_drill"), hole), settings
+        )
         assert deepest.at_most is not None
         assert deepest.depth < deepest.at_most <= deepest.depth * (1 + share)
 
     def test_is_not_stated_without_a_budget(self):
         drilled = free(901).asking(proof_boxes=0)
-        assert deepest_as_drilled(*drilled.all).at_most is None
+        assert deepest_as_drilled(*drilled.both).at_most is None
 
     @pytest.mark.parametrize("seed", [907, 36])
     def test_a_greater_budget_costs_more_and_stays_within_it(self, seed):
         drilled = free(seed)
-        found = deepest_free(*drilled.all)[0]
-        small, large = (bound_free_depth(Problem(*drilled.all), found, boxes) for boxes in (30_000, 200_000))
+        found = deepest_free(*drilled.both)[0]
+        small, large = (bound_free_depth(Problem(*drilled.both), found, boxes) for boxes in (30_000, 200_000))
         assert small.boxes <= 30_000
         assert large.boxes <= 200_000
         assert large.at_most <= small.at_most
@@ -122,7 +125,7 @@ class TestBound:
         T[2, 3] = 0.1
         tool = zr.Tool("straight", T)
         hole = Hole("one", [0.5, 0.1, 0.6], [1, 0, 0], 0.02)
-        problem = Problem(robot, tool, hole, zr.Settings(legs="free", min_rate=np.deg2rad(10.0)))
+        problem = Problem(Drilling(robot, tool, hole), zr.Settings(legs="free", min_rate=np.deg2rad(10.0)))
         assert bound_free_depth(problem, 0.0, BUDGET).at_most < 0.005
 
     @pytest.mark.long

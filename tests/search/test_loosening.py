@@ -46,13 +46,13 @@ def pairs(seed):
 
 def what_is_worse(tight, loose):
     """What the loose problem's answer is worse in, in words; empty where it is not."""
-    before, after = optimum(*tight.all), optimum(*loose.all)
+    before, after = optimum(*tight.both), optimum(*loose.both)
     worse = []
     if after.deepest.depth < before.deepest.depth * (1 - SAME):
         worse.append(f"deepest {before.deepest.depth * 1e3:.4f} mm, then {after.deepest.depth * 1e3:.4f} mm")
     if before.motion is None:
         return worse
-    order = Order(*loose.all)
+    order = Order(*loose.both)
     still = order.candidate(cut_short(before.motion.profile, loose.hole.depth), before.motion.branch)
     assert still is not None
     if after.motion is None:

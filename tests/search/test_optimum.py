@@ -13,6 +13,7 @@ from oracles.places import CASES
 from zerorev.files.io import read_job
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.planning import hole as planning
 from zerorev.planning.hole import plan, plan_deepest
@@ -43,12 +44,12 @@ def keeps(motion, settings):
 
 def check_agreement(drilled):
     """At 0.99 of the deepest stroke such a motion is found, at 1.02 it is not, or the stroke is raised to it."""
-    deepest = deepest_as_drilled(*drilled.all).depth
+    deepest = deepest_as_drilled(*drilled.both).depth
     if deepest == 0:
         return 0
     for share in (0.99, 1.02):
         asked = drilled.deep(share * deepest)
-        found = optimum(*asked.all)
+        found = optimum(*asked.both)
         assert keeps(found.motion, drilled.settings) == (asked.hole.depth <= found.deepest.depth), (
             share,
             drilled.hole.id,
@@ -81,8 +82,8 @@ class TestCases:
         assert deepest.deepest == answer.deepest
         # as the check of a depth file searches again
         again = replace(hole, depth=deepest.deepest, profile=deepest.motion.profile)
-        assert deepest_as_drilled(robot, tool, again, settings).depth == deepest.deepest
-        assert deepest_as_drilled(robot, tool, hole, settings).depth == answer.deepest
+        assert deepest_as_drilled(Drilling(robot, tool, again), settings).depth == deepest.deepest
+        assert deepest_as_drilled(Drilling(robot, tool, hole), settings).depth == answer.deepest
 
 
 class TestAgreement:
@@ -105,11 +106,11 @@ class TestAgreement:
         """The search for the stroke made blind: the plan's own motion is then all that is known."""
         hole = positions[0].hole
         monkeypatch.setattr("zerorev.search.optimum.deepest_stroke", lambda *_: Deepest(0.0))
-        found = optimum(robot, tool, hole, OFF)
+        found = optimum(Drilling(robot, tool, hole), OFF)
         whole = deepest_stroke(robot, tool, hole, OFF).depth
         assert hole.depth < found.deepest.depth <= whole * (1 + 1e-6)
         given = replace(hole, profile=found.motion.profile)
-        assert deepest_as_drilled(robot, tool, given, OFF).depth >= hole.depth
+        assert deepest_as_drilled(Drilling(robot, tool, given), OFF).depth >= hole.depth
         deep = evaluate(
             robot, tool, replace(hole, depth=found.deepest.depth), found.deepest.profile, found.deepest.branch
         )
@@ -117,20 +118,20 @@ class TestAgreement:
 
     def test_where_the_search_sees_nothing_the_cut_motion_is_the_plan(self, robot, tool, positions, monkeypatch):
         hole, settings = positions[0].hole, Settings(proof_boxes=0)  # the proof would find what the search does
-        sought = optimum(robot, tool, hole, settings)
-        deepest, order = sought.deepest, Order(robot, tool, hole, settings)
+        sought = optimum(Drilling(robot, tool, hole), settings)
+        deepest, order = sought.deepest, Order(Drilling(robot, tool, hole), settings)
         monkeypatch.setattr(exact, "without_reversal", lambda problem: None)
-        found = optimum(robot, tool, hole, settings).motion
+        found = optimum(Drilling(robot, tool, hole), settings).motion
         assert keeps(found, settings)
         cut = order.candidate(cut_short(deepest.profile, hole.depth), deepest.branch)
         assert order.rank(sought.motion) <= order.rank(found) < order.rank(cut)
 
     def test_from_a_deeper_corner_they_agree_as_well(self, robot, tool, positions):
         settings = Settings(blend=4e-3, deepen_corner=True)
-        deepest = deepest_as_drilled(robot, tool, positions[1].hole, settings).depth
+        deepest = deepest_as_drilled(Drilling(robot, tool, positions[1].hole), settings).depth
         for share, zero in ((0.999, True), (1.02, False)):
             hole = replace(positions[1].hole, depth=share * deepest)
-            found = optimum(robot, tool, hole, settings)
+            found = optimum(Drilling(robot, tool, hole), settings)
             assert keeps(found.motion, settings) == zero == (hole.depth <= found.deepest.depth)
             assert found.motion.profile.standoff.min() == -2e-3
 
@@ -176,7 +177,7 @@ class TestCut:
         settings = Settings(objective=objective)
         deepest = deepest_stroke(robot, tool, position.hole, settings)
         hole = replace(position.hole, depth=deepest.depth / 3, branch=deepest.branch)
-        order = Order(robot, tool, hole, settings)
+        order = Order(Drilling(robot, tool, hole), settings)
         cut = order.candidate(cut_short(deepest.profile, hole.depth), deepest.branch)
         found = descended(order, cut)
         assert keeps(found, settings)
@@ -194,7 +195,7 @@ class TestCut:
         branch = 2 * (deepest.branch // 2) + flip
         order = Order(*drilled.deep(0.6 * deepest.depth).asking(objective="margin").all)
         slopes = deepest.profile.twist_rate
-        straight = order.candidate(cut_short(deepest.profile, order.hole.depth), branch)
+        straight = order.candidate(cut_short(deepest.profile, order.drilling.hole.depth), branch)
         found = steadied(order, branch, float(deepest.profile.psi[1]), slopes, 0.0)
         assert found.reversals == 0
         assert found.score.min_rate.min() > straight.score.min_rate.min()
@@ -220,7 +221,7 @@ class TestCheck:
         answer = plan_deepest(robot, tool, hole, settings)
         assert (answer.status, answer.score.reversals) == ("planned", 0)
         assert answer.verified.passed
-        assert answer.hole.depth == answer.deepest < deepest_as_drilled(robot, tool, hole, settings).depth
+        assert answer.hole.depth == answer.deepest < deepest_as_drilled(Drilling(robot, tool, hole), settings).depth
         (rejected,) = [finding for finding in answer.findings if finding.kind == "rejected"]
         assert "a deeper motion without a reversal was found, but does not pass the check: A4" in rejected.message
 
@@ -284,18 +285,21 @@ class TestLeadIn:
     def test_kept_whole_where_it_is_asked_for(self, seed):
         """By default it is shortened at these holes; and plan and deepest stroke agree here, too."""
         drilled = random_hole(seed)
-        whole = deepest_as_drilled(*drilled.all)
+        whole = deepest_as_drilled(*drilled.both)
         kept = drilled.asking(keep_lead_in=True)
-        deepest = deepest_as_drilled(*kept.all)
+        deepest = deepest_as_drilled(*kept.both)
         lead_in = drilled.settings.lead_in
         assert whole.depth - lead_in * (1 + 1e-9) <= deepest.depth <= whole.depth
         shortened = plan(*drilled.deep(0.6 * whole.depth).all)
-        assert find_lead_in(drilled.robot, drilled.tool, shortened, lead_in).length < lead_in
+        assert (
+            find_lead_in(Drilling(drilled.robot, drilled.tool, shortened.hole), shortened.motion, lead_in).length
+            < lead_in
+        )
         for depth in (0.6 * whole.depth, deepest.depth, 1.02 * whole.depth):
             asked = kept.deep(depth)
             answer = plan(*asked.all)
             assert keeps_plan(answer, kept.settings) == (depth <= answer.deepest), depth
-            led = find_lead_in(drilled.robot, drilled.tool, answer, lead_in)
+            led = find_lead_in(Drilling(drilled.robot, drilled.tool, answer.hole), answer.motion, lead_in)
             assert (led.length, led.findings) == (lead_in, ())
             assert answer.verified.passed
 

@@ -19,9 +19,10 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
-from zerorev.motion.critical import critical, critical_at
+from zerorev.motion.critical import critical, critical_at, kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.evaluation import evaluate
-from zerorev.motion.kinematics import critical_rates, inverse, tcp_pose
+from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.planning.hole import plan
 from zerorev.planning.job import plan_job
 from zerorev.search import prediction
@@ -53,7 +54,7 @@ def wrapped(difference):
 
 class TestCritical:
     def test_as_theory_2_has_them(self, robot, tool):
-        found = critical(robot, tool, POSITION_1, 4, np.deg2rad(-5.9388))
+        found = critical(Drilling(robot, tool, POSITION_1), 4, np.deg2rad(-5.9388))
         expected = [0.294, -0.480, -0.436, -0.005, 0.167, 0.388]
         np.testing.assert_allclose(found.kappa / DEG_PER_MM, expected, atol=1.1e-3)
         assert found.spread == pytest.approx(found.kappa.max() - found.kappa.min()) == pytest.approx(found.width)
@@ -65,7 +66,7 @@ class TestCritical:
         theta_s = wrapped(places[0] - places[1]) / (2 * step)
         places = [angles(any_robot, tool, hole, 0.0, p) for p in (psi + step, psi - step)]
         theta_psi = wrapped(places[0] - places[1]) / (2 * step)
-        seen = critical_at(any_robot, tool, hole, psi)
+        seen = critical_at(Drilling(any_robot, tool, hole), psi)
         assert {each.branch for each in seen} == set(np.flatnonzero(~np.isnan(theta_s[:, 0])))
         assert len(seen) >= 2
         for each in seen:
@@ -78,7 +79,7 @@ class TestCritical:
         self, robot, tool, branch, psi
     ):
         depth = 1e-5
-        hole, at = hole_at((500, 300, 800), depth), critical(robot, tool, POSITION_1, branch, psi)
+        hole, at = hole_at((500, 300, 800), depth), critical(Drilling(robot, tool, POSITION_1), branch, psi)
         for beyond, reversals in ((1e-3, 0), (-1e-3, 1)):
             ends = psi + depth * np.array([at.below - beyond * at.width, at.above + beyond * at.width])
             seen = evaluate(robot, tool, hole, Profile.straight(depth, ends[0], psi, ends[1]), branch)
@@ -88,7 +89,7 @@ class TestCritical:
     def test_the_threshold_is_met_at_the_ends_of_the_bracket(self, robot, tool):
         least = np.deg2rad(10.0)
         psi, step = -0.1, 1e-6
-        at = critical(robot, tool, POSITION_1, 4, psi, least)
+        at = critical(Drilling(robot, tool, POSITION_1), 4, psi, least)
         for slope in (at.below, at.above):
             on, back = (angles(robot, tool, POSITION_1, s, psi + slope * s)[4] for s in (step, -step))
             assert np.abs(wrapped(on - back) / (2 * step)).min() == pytest.approx(least, rel=1e-4)
@@ -97,19 +98,19 @@ class TestCritical:
     def test_without_a_lever_the_bracket_is_infinite(self, robot, tool):
         T = tool.T_flange_tcp.copy()
         T[2, 3] = -robot.arm.c4
-        at = critical(robot, Tool("no lever", T), POSITION_1, 4, 0.3)
+        at = critical(Drilling(robot, Tool("no lever", T), POSITION_1), 4, 0.3)
         assert np.isinf(at.kappa[:3]).all()
         assert (at.spread, at.below, at.above) == (np.inf, -np.inf, np.inf)
 
     def test_out_of_reach(self, robot, tool):
         far = hole_at((3000, 0, 500))
-        assert np.isnan(critical(robot, tool, far, 0, 0.0).kappa).all()
-        assert np.isnan(critical(robot, tool, far, 0, 0.0).spread)
-        assert critical_at(robot, tool, far, 0.0) == ()
+        assert np.isnan(critical(Drilling(robot, tool, far), 0, 0.0).kappa).all()
+        assert np.isnan(critical(Drilling(robot, tool, far), 0, 0.0).spread)
+        assert critical_at(Drilling(robot, tool, far), 0.0) == ()
 
     def test_no_such_branch(self, robot, tool):
         with pytest.raises(InputError, match="branch 8"):
-            critical(robot, tool, POSITION_1, 8, 0.0)
+            critical(Drilling(robot, tool, POSITION_1), 8, 0.0)
 
 
 class TestRoots:
@@ -135,7 +136,7 @@ class TestRoots:
 
 def test_the_expansion_is_that_of_the_joints_along_a_leg(robot, tool):
     """Third order by the rates' derivatives against inverse kinematics: the error shrinks with the fourth power."""
-    line = prediction._target_line(robot, tool, POSITION_1, OFF)
+    line = prediction._target_line(Drilling(robot, tool, POSITION_1), OFF)
     n = int(np.flatnonzero(line.branch == 4)[7])
     u, errors = 8.0, []
     powers = [np.array([u**k for k in range(len(order))]) @ order[:, n] for order in line.motion]
@@ -151,11 +152,13 @@ class TestPredict:
     @pytest.mark.parametrize("settings", [OFF, Settings()], ids=["no threshold", "threshold"])
     def test_the_width_of_the_bracket_bounds_the_twist_of_what_the_search_finds(self, robot, tool, position, settings):
         hole = position.hole
-        found = search(robot, tool, hole, settings)
+        found = search(Drilling(robot, tool, hole), settings)
         assert found.reversals == 0
         start, target, end = found.profile.psi
-        at = critical(robot, tool, hole, found.branch, target, settings.min_rate if found.keeps_threshold else 0.0)
-        bound = predict(robot, tool, hole, settings).cheapest.width * hole.depth
+        at = critical(
+            Drilling(robot, tool, hole), found.branch, target, settings.min_rate if found.keeps_threshold else 0.0
+        )
+        bound = predict(Drilling(robot, tool, hole), settings).cheapest.width * hole.depth
         assert bound <= at.width * hole.depth * (1 + 1e-6) <= abs(end - start) * (1 + 2e-6)
 
     def test_the_narrowest_bracket_lies_between_those_of_a_coarser_and_of_a_finer_grid(self, robot, tool, position):
@@ -165,34 +168,39 @@ class TestPredict:
             inside = angles(robot, tool, hole, 0.0, spins)
             turns = np.ceil((robot.limits.lower - inside) / (2 * np.pi))
             use = (inside + 2 * np.pi * turns <= robot.limits.upper).all(axis=-1)
-            kappa = critical_rates(robot, tool, hole, 0.0, spins)
+            kappa = kappa_of(*joint_rates(Drilling(robot, tool, hole), 0.0, spins))
             least.append((kappa.max(axis=-1) - kappa.min(axis=-1))[use].min())
-        narrowest = predict(robot, tool, hole, OFF).cheapest.width
+        narrowest = predict(Drilling(robot, tool, hole), OFF).cheapest.width
         assert least[1] * (1 - 1e-4) <= narrowest <= least[0] * (1 + 1e-4)
 
     def test_the_places_are_in_the_branch_and_the_bound_that_are_asked_for(self, robot, tool):
         settings = replace(OFF, psi_bound=0.4)
-        foretold = predict(robot, tool, replace(POSITION_1, branch=4), settings)
+        foretold = predict(Drilling(robot, tool, replace(POSITION_1, branch=4)), settings)
         for at in (foretold.cheapest, foretold.deepest_at):
             assert at.branch == 4
             assert abs(at.psi) <= 0.4
-        assert foretold.deepest < predict(robot, tool, POSITION_1, OFF).deepest
+        assert foretold.deepest < predict(Drilling(robot, tool, POSITION_1), OFF).deepest
 
     def test_a_deeper_hole_needs_more_twist_up_to_where_none_is_foretold(self, robot, tool):
-        twists = [predict(robot, tool, hole_at((500, 300, 800), depth), OFF).least_twist for depth in (0.02, 0.05, 0.5)]
+        twists = [
+            predict(Drilling(robot, tool, hole_at((500, 300, 800), depth)), OFF).least_twist
+            for depth in (0.02, 0.05, 0.5)
+        ]
         assert twists[0] < twists[1] < twists[2] == np.inf
 
     def test_the_threshold_costs_depth(self, robot, tool):
-        assert predict(robot, tool, POSITION_1).deepest < predict(robot, tool, POSITION_1, OFF).deepest
+        assert (
+            predict(Drilling(robot, tool, POSITION_1)).deepest < predict(Drilling(robot, tool, POSITION_1), OFF).deepest
+        )
 
     def test_nothing_is_foretold_out_of_reach(self, robot, tool):
-        nothing = predict(robot, tool, hole_at((3000, 0, 500)))
+        nothing = predict(Drilling(robot, tool, hole_at((3000, 0, 500))))
         assert (nothing.cheapest, nothing.least_twist, nothing.deepest, nothing.deepest_at) == (None, np.inf, 0.0, None)
 
     def test_nothing_is_foretold_without_a_lever(self, robot, tool):
         T = tool.T_flange_tcp.copy()
         T[2, 3] = -robot.arm.c4
-        assert predict(robot, Tool("no lever", T), POSITION_1).deepest == 0
+        assert predict(Drilling(robot, Tool("no lever", T), POSITION_1)).deepest == 0
 
     @pytest.mark.long
     def test_as_good_as_the_documentation_says(self, robot, tool):
@@ -202,7 +210,7 @@ class TestPredict:
             depth = deepest_stroke(robot, tool, hole, OFF).depth
             if depth > 0:
                 exact.append(depth)
-                foretold.append(predict(robot, tool, hole, OFF).deepest)
+                foretold.append(predict(Drilling(robot, tool, hole), OFF).deepest)
         error = np.abs(np.array(foretold) / exact - 1)
         assert spearmanr(foretold, exact).statistic > 0.85
         assert np.median(error) < 0.25
@@ -240,7 +248,7 @@ class TestCommand:
 class TestPlan:
     def test_states_the_critical_rates_that_its_legs_bracket(self, robot, tool, position):
         answer = plan(robot, tool, replace(position.hole, profile=position.profile, branch=position.branch))
-        at = critical(robot, tool, position.hole, position.branch, position.profile.psi[1])
+        at = critical(Drilling(robot, tool, position.hole), position.branch, position.profile.psi[1])
         np.testing.assert_allclose(answer.critical_rates, at.kappa)
         low, high = sorted(position.profile.twist_rate)
         assert (low < answer.critical_rates).all()
@@ -251,7 +259,7 @@ class TestPlan:
         deeper = Profile.straight(0.05, 0.25, -0.1, -0.55, corner=settings.corner)
         answer = plan(robot, tool, replace(POSITION_1, profile=deeper, branch=4), settings)
         corner = replace(POSITION_1, target=POSITION_1.target + 0.005 * X)
-        np.testing.assert_allclose(answer.critical_rates, critical(robot, tool, corner, 4, -0.1).kappa)
+        np.testing.assert_allclose(answer.critical_rates, critical(Drilling(robot, tool, corner), 4, -0.1).kappa)
 
     def test_the_file_holds_them(self, robot, tool, position, tmp_path):
         hole = replace(position.hole, profile=position.profile, branch=position.branch)

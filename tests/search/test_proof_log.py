@@ -8,6 +8,7 @@ import pytest
 import zerorev as zr
 from oracles.proof_trees import THESIS
 from zerorev.kernels import bound_nodes
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.exact import search
@@ -17,19 +18,19 @@ from zerorev.search.problem import Problem
 def problem_of(robot, tool):
     target, depth = THESIS[1]
     hole = zr.Hole("2", target=target, direction=[1, 0, 0], depth=depth)
-    return Problem(robot, tool, hole, zr.Settings(min_rate=0.0))
+    return Problem(Drilling(robot, tool, hole), zr.Settings(min_rate=0.0))
 
 
 def test_the_proof_is_the_same_with_it(robot, tool):
     problem = problem_of(robot, tool)
-    best = search(robot, tool, problem.hole, problem.settings)
+    best = search(Drilling(robot, tool, problem.drilling.hole), problem.settings)
     trees = []
     with_log, without = prove(problem, best, 100_000, log=trees), prove(problem, best, 100_000)
     assert (with_log.optimality, with_log.boxes) == (without.optimality, without.boxes)
     assert len(trees) == 1
     claim = trees[0].claim
     assert claim.value == without.optimality.travel_at_least
-    assert (claim.depth, claim.min_rate, claim.most_cost) == (problem.hole.depth, 0.0, 0.0)
+    assert (claim.depth, claim.min_rate, claim.most_cost) == (problem.drilling.hole.depth, 0.0, 0.0)
 
 
 def test_it_is_whole(robot, tool):

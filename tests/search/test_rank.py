@@ -15,6 +15,7 @@ from zerorev.model.map_task import Question
 from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
 from zerorev.model.quantity import quantity
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, meets_threshold
 from zerorev.planning.hole import plan
 from zerorev.search.rank import Candidate, Order
@@ -79,7 +80,7 @@ def test_motions_are_sorted_as_the_rules_in_words_sort_them(robot, tool, objecti
     settings = Settings(
         min_rate=THRESHOLD, min_rate_rule=rule, objective=objective, reversal_weights=(1.0, 1.0, 2.0, 0.5, 1.0, 0.5)
     )
-    order = Order(robot, tool, Hole("h", X, X, 0.02), settings)
+    order = Order(Drilling(robot, tool, Hole("h", X, X, 0.02)), settings)
     motions = list(random_candidates(settings, 150, 7))
     ranked, naive = (
         sorted(motions, key=order.rank),
@@ -94,7 +95,7 @@ def test_motions_are_sorted_as_the_rules_in_words_sort_them(robot, tool, objecti
 
 def test_less_lack_comes_before_less_travel(robot, tool):
     settings = Settings(min_rate=THRESHOLD)
-    order = Order(robot, tool, Hole("h", X, X, 0.02), settings)
+    order = Order(Drilling(robot, tool, Hole("h", X, X, 0.02)), settings)
     slow = candidate(settings, [0] * 6, [0.3 * THRESHOLD] * 6, 1.0, (0.1, 0.0, -0.1))
     faster = candidate(settings, [0] * 6, [0.7 * THRESHOLD] * 6, 5.0, (0.1, 0.0, -0.1))
     fewer = candidate(settings, [0, 0, 0, 0, 0, 1], [2 * THRESHOLD] * 6, 0.5, (0.1, 0.0, -0.1))
@@ -105,7 +106,7 @@ def test_weights_of_criteria_decide_where_there_are_any(robot, tool, positions):
     """By the sum of the criteria of real motions, which the objective's own order would sort otherwise."""
     hole, alone = positions[0].hole, Settings(min_rate=0.0)
     weighed = Settings(min_rate=0.0, weights=(("margin", 1.0),))
-    by_travel, by_margin = Order(robot, tool, hole, alone), Order(robot, tool, hole, weighed)
+    by_travel, by_margin = Order(Drilling(robot, tool, hole), alone), Order(Drilling(robot, tool, hole), weighed)
     spins = positions[0].profile.psi
     motions = [
         by_travel.candidate(Profile.straight(hole.depth, *(spins + wide * np.array([1, 0, -1]))), positions[0].branch)

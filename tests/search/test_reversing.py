@@ -11,6 +11,7 @@ from benchmarks.parts.holes import ANY_DEPTH
 
 from oracles import search as twin
 from zerorev.model.job import Settings
+from zerorev.motion.drilling import Drilling
 from zerorev.search.exact import search, sets_to_keep
 from zerorev.search.problem import Problem
 from zerorev.search.survey import survey, surveyed
@@ -26,12 +27,12 @@ def random_hole(seed: int) -> Case:
 
 
 def problem_of(case: Case, settings: Settings = NO_THRESHOLD, branch: int | None = None) -> Problem:
-    return Problem(case.robot, case.tool, replace(case.hole, branch=branch), settings)
+    return Problem(Drilling(case.robot, case.tool, replace(case.hole, branch=branch)), settings)
 
 
 def ranked(problem: Problem):
     """What the search finds, by reversals, lack of motion, and travel."""
-    found = search(problem.robot, problem.tool, problem.hole, problem.settings)
+    found = search(Drilling(problem.drilling.robot, problem.drilling.tool, problem.drilling.hole), problem.settings)
     return (np.inf, np.inf, np.inf) if found is None else problem.order.rank(found)[:3]
 
 
@@ -48,7 +49,7 @@ class TestAllBranchesAtOnce:
     def test_a_valley_that_looks_dearer_than_another_branch_is_gone_down(self):
         """Random hole 1079: on the grid branches 0 and 1 look 18 % dearer than 2 and 3; they are 7 % cheaper."""
         case = random_hole(1079)
-        found = search(case.robot, case.tool, case.hole, NO_THRESHOLD)
+        found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         assert found.branch in (0, 1)
         assert found.score.reversals_per_joint == (0, 1, 1, 0, 0, 0)
         assert np.rad2deg(found.score.travel) == pytest.approx(73.6345, abs=1e-3)

@@ -9,6 +9,7 @@ import pytest
 from oracles.holes import ROBOTS, Drilled, random_hole, scaled
 from zerorev.model.job import Settings
 from zerorev.model.resized import resized, resized_profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.planning.hole import plan
 from zerorev.program.lead_in import find_lead_in
@@ -41,7 +42,7 @@ def check_size(drilled, factor, rel):
     assert theirs.score.min_rate * factor == pytest.approx(mine.score.min_rate, rel=100 * rel, abs=1e-4)
     assert theirs.verified.passed
     leads = [
-        find_lead_in(each.robot, each.tool, answer, each.settings.lead_in).length
+        find_lead_in(Drilling(each.robot, each.tool, answer.hole), answer.motion, each.settings.lead_in).length
         for each, answer in ((drilled, mine), (other, theirs))
     ]
     assert leads[1] / factor == pytest.approx(leads[0], abs=3e-6 * drilled.robot.size)

@@ -11,6 +11,7 @@ import pytest
 from zerorev.errors import InputError
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.search import exact
 from zerorev.thesis import methods
@@ -110,11 +111,11 @@ class TestEveryMethod:
 class TestOnAHole:
     @pytest.fixture
     def problem(self, robot, tool, position):
-        return Problem(robot, tool, position.hole)
+        return Problem(Drilling(robot, tool, position.hole))
 
     def test_exact_is_the_exact_search_without_a_threshold(self, problem):
         outcome = METHODS["exact"].run(problem, 0, 400)
-        found = exact.search(problem.robot, problem.tool, problem.hole, Settings(min_rate=0.0, psi_bound=np.pi))
+        found = exact.search(problem.drilling, Settings(min_rate=0.0, psi_bound=np.pi))
         np.testing.assert_array_equal(outcome.spins, found.profile.psi)
         assert (outcome.branch, outcome.reversals, outcome.evaluations) == (found.branch, 0, 0)
         # its score is that of the sampled objective, which has the same travel
@@ -123,20 +124,29 @@ class TestOnAHole:
     def test_exact_keeps_the_threshold_of_the_weighing(self, problem):
         least = np.deg2rad(10.0)
         outcome = METHODS["exact"].run(replace(problem, weighing=methods.Weighing(min_rate=least)), 0, 400)
-        profile = Profile.straight(problem.hole.depth, *outcome.spins)
-        score = evaluate(problem.robot, problem.tool, problem.hole, profile, outcome.branch).score
+        profile = Profile.straight(problem.drilling.hole.depth, *outcome.spins)
+        score = evaluate(
+            problem.drilling.robot, problem.drilling.tool, problem.drilling.hole, profile, outcome.branch
+        ).score
         assert score.min_rate.min() >= least * (1 - 1e-6)
 
     def test_exact_finds_nothing_out_of_reach(self, problem):
-        far = replace(problem, hole=replace(problem.hole, target=10 * problem.hole.target))
+        far = replace(
+            problem,
+            drilling=replace(
+                problem.drilling, hole=replace(problem.drilling.hole, target=10 * problem.drilling.hole.target)
+            ),
+        )
         assert METHODS["exact"].run(far, 0, 400) is None
 
     @pytest.mark.parametrize("name", ["swarm", "differential_evolution"])
     def test_no_outcome_scores_better_than_exact_where_it_has_no_reversal(self, problem, name):
         best = METHODS["exact"].run(problem, 0, 400)
         outcome = METHODS[name].run(problem, 0, 2000)
-        profile = Profile.straight(problem.hole.depth, *outcome.spins)
-        score = evaluate(problem.robot, problem.tool, problem.hole, profile, outcome.branch).score
+        profile = Profile.straight(problem.drilling.hole.depth, *outcome.spins)
+        score = evaluate(
+            problem.drilling.robot, problem.drilling.tool, problem.drilling.hole, profile, outcome.branch
+        ).score
         assert score.reversals > 0 or score.travel >= best.score * 84 * np.pi * (1 - 1e-4)
 
     def test_a_swarm_is_as_long_as_its_table_says(self, planted):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from zerorev.errors import InputError, OutputError
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis import parameter_map as module
 from zerorev.thesis.measures import best_cell, mirrored, zero_reversals
 from zerorev.thesis.parameter_map import AXES, parameter_map, spin_axis
@@ -42,7 +43,7 @@ class TestCells:
     def test_a_thousand_random_cells_are_what_the_objective_says(self, robot, tool, position, weighing):
         found = parameter_map(robot, tool, position.hole, weighing, size=40)
         cells, spins = drawn(found, 1000, seed=1)
-        judged = SampledObjective(robot, tool, position.hole, weighing).judged(spins)
+        judged = SampledObjective(Drilling(robot, tool, position.hole), weighing).judged(spins)
         np.testing.assert_allclose(found["score"].values[cells], judged.score, rtol=0, atol=1e-9)
         np.testing.assert_array_equal(found["reversals"].values[cells], judged.reversals)
         runs = judged.reversals >= 0
@@ -61,7 +62,7 @@ class TestCells:
             found = parameter_map(bound, tool, positions[0].hole, weighing, size=24)
             assert (found["score"].values > free["score"].values + 1e-6).sum() > 100
             cells, spins = drawn(found, 1000, seed=2)
-            judged = SampledObjective(bound, tool, positions[0].hole, weighing)(spins)
+            judged = SampledObjective(Drilling(bound, tool, positions[0].hole), weighing)(spins)
             np.testing.assert_allclose(found["score"].values[cells], judged, rtol=0, atol=1e-9)
 
     def test_out_of_reach_every_cell_costs_one(self, robot, tool, positions):
@@ -113,7 +114,7 @@ class TestMirror:
 
     def test_the_published_optimum_off_the_grid(self, robot, tool, positions):
         start, target, end = np.deg2rad(positions[0].psi_deg)
-        objective = SampledObjective(robot, tool, positions[0].hole)
+        objective = SampledObjective(Drilling(robot, tool, positions[0].hole))
         score, back = objective(np.array([[start, target, end], [end, target, start]]))
         assert score == pytest.approx(back, abs=1e-9)
         found = parameter_map(robot, tool, positions[0].hole, size=2, psi_range=(end, start), psi_target=[target])

@@ -10,6 +10,7 @@ import pytest
 from oracles import sampled as twin
 from zerorev.errors import InputError
 from zerorev.motion.criteria import thesis_objective
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.thesis.sampled import THESIS_MIN_RATE, SampledObjective, Weighing, even_fractions
 
@@ -22,7 +23,7 @@ def published(position):
 
 class TestSampledObjective:
     def test_is_the_best_branch_of_the_twin(self, robot, tool, position):
-        objective, fractions = SampledObjective(robot, tool, position.hole, samples=40), even_fractions(40)
+        objective, fractions = SampledObjective(Drilling(robot, tool, position.hole), samples=40), even_fractions(40)
         found = objective.judged(ALL_ROUND[:10])
         for m, motion in enumerate(ALL_ROUND[:10]):
             each = [
@@ -35,23 +36,23 @@ class TestSampledObjective:
             assert found.reversals[m] == each[best][1]
 
     def test_the_published_motions_have_no_reversal(self, robot, tool, position):
-        objective = SampledObjective(robot, tool, position.hole)
+        objective = SampledObjective(Drilling(robot, tool, position.hole))
         (score,), (branch,), (reversals,) = objective.judged(published(position))
         assert (branch // 2, reversals) == (position.branch // 2, 0)
         assert score == pytest.approx(np.deg2rad(position.travel_deg) / (84 * np.pi), rel=1e-3)
 
     def test_weights_are_those_asked_for(self, robot, tool, positions):
         hole = positions[0].hole
-        reversals = SampledObjective(robot, tool, hole, Weighing(reversals=1.0, travel=0.0))
-        travel = SampledObjective(robot, tool, hole, Weighing(reversals=0.0, travel=1.0))
-        thesis = SampledObjective(robot, tool, hole)
+        reversals = SampledObjective(Drilling(robot, tool, hole), Weighing(reversals=1.0, travel=0.0))
+        travel = SampledObjective(Drilling(robot, tool, hole), Weighing(reversals=0.0, travel=1.0))
+        thesis = SampledObjective(Drilling(robot, tool, hole))
         counted, moved, both = (each.on_branches(ALL_ROUND)[0] for each in (reversals, travel, thesis))
         runs = thesis.on_branches(ALL_ROUND)[1] >= 0
         np.testing.assert_allclose(counted[runs] * 6, np.round(counted[runs] * 6), atol=1e-12)
         np.testing.assert_allclose(both[runs], 6 / 7 * counted[runs] + 1 / 7 * moved[runs], atol=1e-12)
 
     def test_counts_what_it_judges(self, robot, tool, positions):
-        objective = SampledObjective(robot, tool, positions[0].hole)
+        objective = SampledObjective(Drilling(robot, tool, positions[0].hole))
         assert (objective.evaluations, objective.first_zero) == (0, None)
         objective(np.zeros((7, 3)))
         assert (objective.evaluations, objective.first_zero) == (7, None)
@@ -64,28 +65,28 @@ class TestSampledObjective:
         assert objective.first_zero == 10
 
     def test_is_the_same_to_the_last_bit_on_any_number_of_threads(self, robot, tool, position):
-        alone = SampledObjective(robot, tool, position.hole, threads=1).judged(ALL_ROUND)
+        alone = SampledObjective(Drilling(robot, tool, position.hole), threads=1).judged(ALL_ROUND)
         for threads in (2, 3, 7):
-            shared = SampledObjective(robot, tool, position.hole, threads=threads).judged(ALL_ROUND)
+            shared = SampledObjective(Drilling(robot, tool, position.hole), threads=threads).judged(ALL_ROUND)
             for one, other in zip(alone, shared, strict=True):
                 np.testing.assert_array_equal(one, other)
 
     def test_the_hole_may_name_the_branch(self, robot, tool, positions):
         hole = replace(positions[0].hole, branch=5)
-        costs, reversals = SampledObjective(robot, tool, hole).on_branches(ALL_ROUND)
-        found = SampledObjective(robot, tool, hole).judged(ALL_ROUND)
+        costs, reversals = SampledObjective(Drilling(robot, tool, hole)).on_branches(ALL_ROUND)
+        found = SampledObjective(Drilling(robot, tool, hole)).judged(ALL_ROUND)
         np.testing.assert_array_equal(found.score, costs[:, 5])
         np.testing.assert_array_equal(found.reversals, reversals[:, 5])
         assert (found.branch == 5).all()
 
     def test_no_motions_are_no_trouble(self, robot, tool, positions):
-        assert SampledObjective(robot, tool, positions[0].hole, threads=2)(np.empty((0, 3))).shape == (0,)
+        assert SampledObjective(Drilling(robot, tool, positions[0].hole), threads=2)(np.empty((0, 3))).shape == (0,)
 
 
 class TestTurns:
     def test_chosen_after_the_extents_the_mirror_law_holds(self, robot, tool, position):
         """Thesis eq. 4.12: start and end may change places."""
-        objective = SampledObjective(robot, tool, position.hole)
+        objective = SampledObjective(Drilling(robot, tool, position.hole))
         spins = np.concatenate([ALL_ROUND, published(position)])
         there, back = objective.on_branches(spins), objective.on_branches(spins[:, ::-1])
         np.testing.assert_allclose(there[0], back[0], atol=1e-9)
@@ -94,7 +95,7 @@ class TestTurns:
     def test_fixed_at_the_first_point_a_block_is_missing(self, robot, tool, positions):
         """The motion that the thesis names: psi = [-1, 0, 1] runs with 3 reversals, its mirror image does not run."""
         hole, spins = positions[0].hole, np.array([[-1.0, 0.0, 1.0], [1.0, 0.0, -1.0]])
-        after, first = (SampledObjective(robot, tool, hole, Weighing(turns=turns)).judged(spins)
+        after, first = (SampledObjective(Drilling(robot, tool, hole), Weighing(turns=turns)).judged(spins)
                         for turns in ("after_extents", "first_point"))  # fmt: skip
         assert after.score[0] == pytest.approx(after.score[1], abs=1e-9)
         assert first.reversals.tolist() == [3, -1]
@@ -102,7 +103,7 @@ class TestTurns:
 
     def test_fixed_at_the_first_point_is_never_better(self, robot, tool, positions):
         hole, both = positions[0].hole, (Weighing(), Weighing(turns="first_point"))
-        after, first = (SampledObjective(robot, tool, hole, each).on_branches(ALL_ROUND)[0] for each in both)
+        after, first = (SampledObjective(Drilling(robot, tool, hole), each).on_branches(ALL_ROUND)[0] for each in both)
         assert (first >= after).all()
         assert (first > after).any()
 
@@ -113,9 +114,9 @@ class TestThreshold:
         rate = np.deg2rad(0.005) * 200 / (2 * position.hole.depth)
         for rule, keeps in (("pointwise", False), ("mean", position.name == "position 1")):
             weighing = Weighing(min_rate=rate, min_rate_rule=rule)
-            found = SampledObjective(robot, tool, position.hole, weighing).on_branches(published(position))
+            found = SampledObjective(Drilling(robot, tool, position.hole), weighing).on_branches(published(position))
             assert (found[1][0, position.branch] == 0) == keeps
-            plain = SampledObjective(robot, tool, position.hole).on_branches(published(position))
+            plain = SampledObjective(Drilling(robot, tool, position.hole)).on_branches(published(position))
             excess = found[0][0, position.branch] - plain[0][0, position.branch]
             assert excess == pytest.approx(0.0 if keeps else 1.0, abs=1e-12)
 
@@ -131,18 +132,20 @@ class TestLookAgain:
         start, target, end = published(positions[0])[0]
         shares = np.linspace(0.5, 1.0, 2001)
         spins = np.stack([np.full(2001, start), np.full(2001, target), target + shares * (end - target)], axis=1)
-        coarse, fine = (SampledObjective(robot, tool, hole, samples=n).on_branches(spins)[1][:, branch]
+        coarse, fine = (SampledObjective(Drilling(robot, tool, hole), samples=n).on_branches(spins)[1][:, branch]
                         for n in (200, 40_000))  # fmt: skip
         between = np.flatnonzero((coarse == 0) & (fine > 0))
         assert between.size
-        objective = SampledObjective(robot, tool, hole)
+        objective = SampledObjective(Drilling(robot, tool, hole))
         again = objective.look_again(spins[between[0]], branch)
         assert again.reversals == fine[between[0]]
         assert again.exact.score.reversals >= again.reversals
         assert objective.evaluations == 0
 
     def test_is_equation_4_7_of_the_exact_evaluation(self, robot, tool, position):
-        again = SampledObjective(robot, tool, position.hole).look_again(published(position)[0], position.branch)
+        again = SampledObjective(Drilling(robot, tool, position.hole)).look_again(
+            published(position)[0], position.branch
+        )
         exact = evaluate(robot, tool, position.hole, position.profile, position.branch)
         assert again.exact.score.reversals == exact.score.reversals == again.reversals == 0
         assert again.score == pytest.approx(thesis_objective(exact), abs=1e-6)
@@ -162,15 +165,15 @@ class TestBadInput:
     @pytest.mark.parametrize("samples", [0, -2, 3, 1.5, "200"])
     def test_samples(self, robot, tool, positions, samples):
         with pytest.raises(InputError, match="even number"):
-            SampledObjective(robot, tool, positions[0].hole, samples=samples)
+            SampledObjective(Drilling(robot, tool, positions[0].hole), samples=samples)
 
     @pytest.mark.parametrize("fractions", [[0.0], [0.0, 0.5], [0.1, 1.0], [0.0, 0.6, 0.4, 1.0], [[0.0, 1.0]]])
     def test_fractions(self, robot, tool, positions, fractions):
         with pytest.raises(InputError, match="fractions"):
-            SampledObjective(robot, tool, positions[0].hole, fractions=np.array(fractions))
+            SampledObjective(Drilling(robot, tool, positions[0].hole), fractions=np.array(fractions))
 
     def test_threads_and_shapes(self, robot, tool, positions):
         with pytest.raises(InputError, match="0 threads"):
-            SampledObjective(robot, tool, positions[0].hole, threads=0)
+            SampledObjective(Drilling(robot, tool, positions[0].hole), threads=0)
         with pytest.raises(InputError, match="start, target, end"):
-            SampledObjective(robot, tool, positions[0].hole)(np.zeros(3))
+            SampledObjective(Drilling(robot, tool, positions[0].hole))(np.zeros(3))

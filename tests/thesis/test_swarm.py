@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from zerorev.errors import InputError
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.inertia import INERTIA, Chaotic, Constant, Geometric, Linear, Random
 from zerorev.thesis.sampled import Judged, SampledObjective
 from zerorev.thesis.swarm import TABLE_3, TABLE_4, SwarmSettings, run_swarm
@@ -214,20 +215,21 @@ class TestBadInput:
 
 
 def runs(robot, tool, hole, seeds):
-    return [run_swarm(SampledObjective(robot, tool, hole), replace(TABLE_4, seed=seed)) for seed in seeds]
+    return [run_swarm(SampledObjective(Drilling(robot, tool, hole)), replace(TABLE_4, seed=seed)) for seed in seeds]
 
 
 class TestPositions:
     def test_position_1_always_reaches_zero(self, robot, tool, positions):
         found = runs(robot, tool, positions[0].hole, range(3))
         assert all(run.reversals == 0 for run in found)
-        again = SampledObjective(robot, tool, positions[0].hole)(found[0].spins[None])
+        again = SampledObjective(Drilling(robot, tool, positions[0].hole))(found[0].spins[None])
         assert again[0] == found[0].score
 
     def test_is_the_same_to_the_last_bit_on_any_number_of_threads(self, robot, tool, positions):
         settings = replace(TABLE_4, iterations=10, keep_history=True)
-        one, two = (run_swarm(SampledObjective(robot, tool, positions[1].hole, threads=threads), settings).history
-                    for threads in (1, 2))  # fmt: skip
+        drilling = Drilling(robot, tool, positions[1].hole)
+        swarms = (run_swarm(SampledObjective(drilling, threads=threads), settings) for threads in (1, 2))
+        one, two = (found.history for found in swarms)
         for name in ("positions", "scores", "reversals", "branches"):
             np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
 

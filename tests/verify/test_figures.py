@@ -10,6 +10,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion.criteria import compliance as planned_compliance
 from zerorev.motion.criteria import manipulability as planned_manipulability
 from zerorev.motion.criteria import measure
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import jacobian
 from zerorev.verify.arm import posture_of
@@ -77,7 +78,7 @@ def test_they_are_those_of_planning(robot, drill, random_hole, build, seed):
     np.testing.assert_allclose(score.min_rate, planned.min_rate, rtol=2e-6, atol=1e-9)
     for name in ("mean_rate", "limit_distance"):
         np.testing.assert_allclose(getattr(score, name), getattr(planned, name), rtol=1e-9, atol=1e-9)
-    for name, value in vars(measure(robot, drill, hole, evaluation, settings)).items():
+    for name, value in vars(measure(Drilling(robot, drill, hole), evaluation, settings)).items():
         assert getattr(own.answer.measures, name) == pytest.approx(value, rel=2e-6, abs=1e-9), name
 
 

@@ -11,6 +11,7 @@ pytest.importorskip("nicegui")
 
 from oracles.published import POSITIONS
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.bracket import bracket
 from zerorev.web.views.bracket import options, sentence
 
@@ -20,7 +21,7 @@ STEP = float(np.deg2rad(1.0))
 
 def rates_of(robot, tool, psi_deg):
     hole = POSITIONS[0].hole
-    return bracket(robot, tool, hole, Profile.straight(hole.depth, *np.deg2rad(psi_deg)), 4, STEP)
+    return bracket(Drilling(robot, tool, hole), Profile.straight(hole.depth, *np.deg2rad(psi_deg)), 4, STEP)
 
 
 def series(chart, name):

@@ -16,6 +16,7 @@ from oracles.published import POSITIONS
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.report.scene.twist_map import LIMITED, UNREACHED, twist_map
@@ -121,7 +122,7 @@ def test_the_map_that_is_sent_is_the_map(on_page, session, robot, tool):
         pass
 
     sent = on_page(nothing).last("show_map")
-    found = twist_map(robot, tool, POSITIONS[0].hole, POSITIONS[0].branch)
+    found = twist_map(Drilling(robot, tool, POSITIONS[0].hole), POSITIONS[0].branch)
 
     def grid(name):
         return np.frombuffer(base64.b64decode(sent[name]), dtype=np.uint8).reshape(sent["shape"])

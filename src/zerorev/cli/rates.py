@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
 
 from zerorev.cli.common import FINE, app
@@ -26,18 +25,20 @@ def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> 
     wanted = read_job(job)
 
     from zerorev.motion.critical import critical_at
+    from zerorev.motion.drilling import Drilling
     from zerorev.report.words import rates as shown
     from zerorev.search.prediction import predict
 
     if psi_deg is not None:
-        at, psi = partial(critical_at, wanted.robot, wanted.tool), math.radians(psi_deg)
-        found = [(hole, each) for hole in wanted.holes for each in at(hole, psi)]
+        psi = math.radians(psi_deg)
+        drillings = [Drilling(wanted.robot, wanted.tool, hole) for hole in wanted.holes]
+        found = [(one.hole, each) for one in drillings for each in critical_at(one, psi)]
         if json:
             terminal.print_json([{"id": hole.id} | shown.rates_data(each) for hole, each in found])
         else:
             terminal.out().print(shown.rates_table(wanted, found))
         return FINE
-    foretold = [predict(wanted.robot, wanted.tool, hole, wanted.settings) for hole in wanted.holes]
+    foretold = [predict(Drilling(wanted.robot, wanted.tool, hole), wanted.settings) for hole in wanted.holes]
     if json:
         pairs = zip(wanted.holes, foretold, strict=True)
         terminal.print_json([shown.foretold_data(hole, each) for hole, each in pairs])

@@ -2,7 +2,7 @@
 
 A box is an interval of spins at the target and an interval of slopes, on one posture. It is examined at a few
 stand-offs at a time. All joints are in model angles, with sin(q5) >= 0. Lengths in m, angles in rad. No kernel raises.
-`formulas` is a `zerorev.search.bounds.rates.Formulas`, `rules` a `zerorev.search.bounds.tree.Rules` throughout.
+`formulas` is a `zerorev.search.bounds.rates.Formulas`, `rules` a `layout.BoundRules` throughout.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Compass searches from a pair of legs, whatever reverses: its figures move by ever less (theory §3).
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked` throughout.
+`asked` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         point: in and out, shape (3,): psi_t [rad] and the two slopes [rad/m].
         step: of psi_t, to begin with [rad].
         weights: see `judge_pair`.
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: see `judge_pair`.
         nodes: points on a leg.
         best: out, shape (3,): cost, lack and value.
@@ -82,7 +82,7 @@ def settle(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         point: see `refine`.
         step: see `refine`.
         weights: see `judge_pair`.
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: see `judge_pair`.
         nodes: points on a leg.
         best: see `refine`.

@@ -3,7 +3,7 @@
 A fan answers which pair of legs, whatever reverses, has the fewest reversals.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked`, `fan` a `zerorev.search.survey.Fan` throughout.
+`asked` is a `layout.Constraints`, `fan` a `zerorev.search.survey.Fan` throughout.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-d
     Args:
         kappa: critical rates at the target [rad/m], shape (6,).
         psi_t: spin at the target [rad].
-        asked: `Asked`, for the steepest slope and the bound on the spin.
+        asked: `Constraints`, for the steepest slope and the bound on the spin.
         out: out, shape (MAX_FAN,): rising slopes.
         critical: out, shape (MAX_FAN,): whether a slope is a critical rate.
 
@@ -96,7 +96,7 @@ def follow(arm, plane, psi, asked, nodes, branches, fan):  # type: ignore[no-unt
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
-        asked: `Asked`.
+        asked: `Constraints`.
         nodes: points on a leg.
         branches: whether to look at a branch, shape (8,).
         fan: out, `Fan`.
@@ -137,7 +137,7 @@ def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no
         slope_a: twist rates [rad/m]; slope_b the other.
         slope_b: see slope_a.
         weights: what a reversal of each joint costs, shape (6,).
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
 
     Returns:
@@ -193,7 +193,7 @@ def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: 
         psi: spins at the target [rad], shape (K,).
         fan: `Fan`, from `follow` with slopes between the critical rates.
         weights: see `judge_pair`.
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: see `judge_pair`.
         branches: whether to look at a branch, shape (8,).
         out: out, shape (8, K, 5): cost, lack and value of the best pair, inf where none can be run, and its slopes.

@@ -32,7 +32,7 @@ def signs_at(arm, plane, posture, psi_t, held, room, sense):  # type: ignore[no-
         plane: `TwistPlane`.
         posture: 0..3.
         psi_t: spin at the target [rad].
-        held: `Held`.
+        held: `Constraints`.
         room: as `living` takes it.
         sense: out, shape (6,).
 
@@ -67,7 +67,7 @@ def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tu
         posture: 0..3.
         psi_t: spin at the target [rad].
         sense: out, shape (6,): see `signs_at`.
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         room: as `living` takes it.
@@ -113,7 +113,7 @@ def slack_within(arm, plane, s, psi, branch, side, at_target, held):  # type: ig
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Held`.
+        held: `Constraints`.
 
     Returns:
         the least room of a joint [rad], below 0 beyond its limit; and what all joints have moved together [rad].
@@ -162,7 +162,7 @@ def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         finest: to which the stand-off is closed in on [m].
         tube: shape (MAX_ROWS, WIDTH).
         rows: how many it has.
@@ -201,7 +201,7 @@ def limited_depth(arm, plane, branch, psi_t, sense, held, finest, tubes, rows, a
         branch: 0..7.
         psi_t: spin at the target [rad].
         sense: as `free_depth` leaves it.
-        held: `Held`.
+        held: `Constraints`.
         finest: to which the depth is closed in on [m].
         tubes: as `free_depth` leaves them, shape (2, MAX_ROWS, WIDTH).
         rows: of each tube, shape (2,).
@@ -246,7 +246,7 @@ def ends_within(arm, plane, branch, side, at_target, held, row, psi, travel):  #
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         row: of a tube, shape (WIDTH,).
         psi: out, shape (KEPT, ENDS) [rad].
         travel: out, shape (KEPT, ENDS) [rad]; inf beyond the limits, and where there is no interval.
@@ -269,7 +269,7 @@ def value_at(arm, plane, branch, psi_t, held, grain, depth, mode, room, tubes, r
         plane: `TwistPlane`.
         branch: 0..7.
         psi_t: spin at the target [rad].
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         depth: [m].
         mode: TRAVEL: what the joints move in all; PLUNGE_ROTATION: what the tool turns on the leg on which it turns
@@ -313,7 +313,7 @@ def scan(arm, plane, psi, branches, held, grain, longest, worth, out):  # type: 
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
         branches: which of the eight to look at, shape (8,).
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         worth: share of the greatest depth below which the limits are not looked into.

@@ -1,7 +1,7 @@
 """The best leg on a side of the critical rates: one dimension, the slope (theory §3).
 
 Lengths in m, angles in rad, rates outwards in rad/m. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked` throughout.
+`asked` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-u
         keep: whether a joint must keep its direction, shape (6,).
         side: 1 above, -1 below.
         psi_t: spin at the target [rad].
-        asked: `Asked`, for the steepest slope and the bound on the spin.
+        asked: `Constraints`, for the steepest slope and the bound on the spin.
         out: out, shape (MAX_SLOPES,): slopes in order away from the critical rates, the outermost of which, or the
             bound, is the first.
 
@@ -88,7 +88,7 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
         psi_t: spin at the target [rad].
         slope: twist rate [rad/m].
         held: what the leg is held to at this target: (sense, keep, at_target), see `judge_leg`.
-        asked: `Asked`; limits that are infinite are not looked at.
+        asked: `Constraints`; limits that are infinite are not looked at.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
         work: room for `fields`.
@@ -146,7 +146,7 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
         side: 1 above the critical rates, -1 below.
         kappa: critical rates at the target, shape (6,).
         held: see `try_slope`.
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
         work: room for `fields`.

@@ -6,7 +6,7 @@ to lie above the critical rates of all joints that must not reverse, the other b
 its own: along the one line of slopes u on its side (`kernels.leg_search`).
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked` throughout.
+`asked` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-unt
             leg unless `asked.turn_inside`.
         at_target: joint angles at the target with their turns, shape (6,).
         depth: length of the leg [m].
-        asked: `Asked`.
+        asked: `Constraints`.
 
     Returns:
         margin: least rate in the wanted sense over the joints to keep [rad/m], by the rule asked for.

@@ -5,7 +5,7 @@ slopes at which it can go that way anywhere in the cell are a half-line, or two 
 open, or all; what the six joints have in common is enclosed by one interval. Everything is rounded outwards.
 
 All joints are in model angles, with sin(q5) >= 0. Lengths in m, angles in rad. No kernel raises. `formulas` is a
-`zerorev.search.bounds.cells.CellFormulas`, `rules` a `zerorev.search.bounds.free_legs.Rules`, `grid` a
+`zerorev.search.bounds.cells.CellFormulas`, `rules` a `layout.Constraints`, `grid` a
 `zerorev.search.bounds.free_legs.Grid` throughout.
 """
 

@@ -4,7 +4,7 @@ Both wrist flips of a posture share their legs, so it is a posture that is searc
 limits allow.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked` throughout.
+`asked` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def best_pair(arm, plane, posture, psi_t, keep, asked, unlimited, branches, mode
         posture: 0..3.
         psi_t: spin at the target [rad].
         keep: whether a joint must keep its direction, shape (6,).
-        asked: `Asked`.
+        asked: `Constraints`.
         unlimited: the same without joint limits.
         branches: whether to look at a branch, shape (8,).
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
@@ -109,7 +109,7 @@ def turns_fit(a, b, flipped, principal, asked):  # type: ignore[no-untyped-def]
         b: see a.
         flipped: whether the legs were followed on the other wrist flip, whose joint 5 moves the other way.
         principal: angles at the target within (-pi, pi], shape (6,).
-        asked: `Asked`.
+        asked: `Constraints`.
     """
     for i in range(6):
         low, high = min(a[LEAST_ANGLE, i], b[LEAST_ANGLE, i]), max(a[GREATEST_ANGLE, i], b[GREATEST_ANGLE, i])
@@ -169,7 +169,7 @@ def look(arm, plane, psi, lines, keep, asked, mode, enough, out):  # type: ignor
         psi: spins at the target [rad], shape (K,).
         lines: whether to look at a branch there, shape (8, K).
         keep: whether a joint must keep its direction, shape (6,).
-        asked: `Asked`.
+        asked: `Constraints`.
         mode: PLUNGE_ROTATION, or TRAVEL.
         enough: a margin; where no leg on one side has more, nothing rests on the other side, and it is left out.
         out: out, shape (4, K, LOOKED): about the least value of pairs that may do (inf: none), what the margin of a
@@ -253,7 +253,7 @@ def set_out(arm, plane, posture, psi_t, asked, branches, cs, kappa, sense, princ
         plane: `TwistPlane`.
         posture: 0..3.
         psi_t: spin at the target [rad].
-        asked: `Asked`.
+        asked: `Constraints`.
         branches: whether to look at a branch, shape (8,).
         cs: out, shape (6, 2): cosines and sines of the model angles.
         kappa: out, shape (6,): critical rates [rad/m].
@@ -286,7 +286,7 @@ def descend(arm, plane, posture, low, high, keep, asked, unlimited, branches, mo
         low: one end of the valley [rad].
         high: the other.
         keep: whether a joint must keep its direction, shape (6,).
-        asked: `Asked`.
+        asked: `Constraints`.
         unlimited: the same without joint limits.
         branches: whether to look at a branch, shape (8,).
         mode: see `best_pair`.

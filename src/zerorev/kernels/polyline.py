@@ -7,7 +7,7 @@ segment runs. So viable sets (`kernels.viable`) are made for legs of straight se
 within a corridor: the viable sets of all curves. The deepest pair of such legs takes a search along the depth, and no
 programme over all breakpoints.
 
-Lengths in m, angles in rad, slopes outwards in rad/m. `held` is a `search.free.Held`. No kernel raises.
+Lengths in m, angles in rad, slopes outwards in rad/m. `held` is a `layout.Constraints`. No kernel raises.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         s: where the segments begin [m].
         length: how far they lead outwards; inwards, if it is below 0 [m].
         psi: spins where they begin [rad], shape (M,), at most BLOCK / LOOKS.
@@ -121,7 +121,7 @@ def leg_back(arm, plane, posture, side, held, standoff, shares, room, spins):  #
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         standoff: of the breakpoints, outwards [m], shape (N + 1,).
         shares: see `slopes_along`.
         room: what `kernels.tube.workspace` returns.
@@ -179,7 +179,7 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         standoff: of the breakpoints, outwards [m], shape (N + 1,).
         shares: see `slopes_along`.
         room: what `kernels.tube.workspace` returns.
@@ -222,7 +222,7 @@ def follow(arm, plane, branch, side, held, grain, tube, rows, psi_t, room, path,
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         tube: stand-offs, counts and sets as left by `kernels.viable.viable`.
         rows: how many it has.
@@ -276,7 +276,7 @@ def pair_width(  # type: ignore[no-untyped-def]
         branch: 0..7.
         sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,); the second leg has the
             opposite ones.
-        held: `Held`.
+        held: `Constraints`.
         guarded: the same with a little more asked of the joints, to which the segments are held.
         limited: whether joint limits are heeded.
         grain: `Grain`.

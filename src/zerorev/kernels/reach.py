@@ -45,7 +45,7 @@ def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         s: where the step begins [m].
         step: how far it leads outwards; inwards, if it is below 0 [m].
         turn: by which an end moves at once, at most [rad]: steep slopes are followed in more and smaller parts.
@@ -106,7 +106,7 @@ def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room)
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         s: stand-off [m].
         between: two spins that are examined, at most [rad].
@@ -193,7 +193,7 @@ def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         s: stand-off [m].
         psi: spin [rad].
-        held: `Held`.
+        held: `Constraints`.
         spot: of what `workspaces` returns all but the first; of joints known at the target the last has the angles
             there, their turns included [rad].
 
@@ -229,7 +229,7 @@ def reachable(arm, plane, branch, side, held, limited, grain, longest, room, sta
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         longest: where to stop [m].
@@ -248,7 +248,7 @@ def reachable(arm, plane, branch, side, held, limited, grain, longest, room, sta
         counts[0] = cut(arm, plane, branch, side, held, limited, standoff[0], grain.between, sets[0], counts[0], room)
         if counts[0] == 0:
             return 0
-    low, high = sets[0, 0, 0] - held.longest_twist, sets[0, counts[0] - 1, 1] + held.longest_twist
+    low, high = sets[0, 0, 0] - held.longest, sets[0, counts[0] - 1, 1] + held.longest
     if held.psi_bound > 0.0:
         low, high = max(low, -held.psi_bound), min(high, held.psi_bound)
     step = grain.step

@@ -28,7 +28,7 @@ def narrow(arm, plane, posture, side, held, tube, rows, room, viable):  # type: 
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         tube: shape (MAX_ROWS, WIDTH).
         rows: how many it has.
         room: what `kernels.tube.workspace` returns.

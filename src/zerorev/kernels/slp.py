@@ -47,7 +47,7 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
         branch: 0..7.
         sense: wanted signs of the outward rates of the first leg on the unflipped wrist, shape (6,); the second leg
             has the opposite ones.
-        rules: `Rules`.
+        rules: `Constraints`.
         goal: DEPTH, as deep as can be; TRAVEL, the least; MARGIN, the greatest; PLUNGE_ROTATION, the least of the two.
         shares: where on each segment the joints are looked at, 0 to 1, shape (Q,).
         steps: at most.
@@ -276,7 +276,7 @@ def _room(first, moved, unit, rules, spare):  # type: ignore[no-untyped-def]
         first: angles at the target within (-pi, pi], shape (6,).
         moved: from there to the outer ends, shape (2, 6).
         unit: length over which the room is spread [m].
-        rules: `Rules`.
+        rules: `Constraints`.
         spare: in and out, shape (12,): wanted signs of the outward rates; room to the limit ahead, by the unit [rad/m].
 
     Returns:
@@ -317,7 +317,7 @@ def _step(rules, goal, trust, lack, price, depth, psi, at, by, spare, cost, near
     """The best change of the unknowns within the trusted region.
 
     Args:
-        rules: `Rules`.
+        rules: `Constraints`.
         goal: see `better`.
         trust: share of the region.
         lack: what the legs lack now.

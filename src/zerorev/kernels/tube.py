@@ -42,7 +42,7 @@ def admissible(work, count, side, held, lo, hi, spare):  # type: ignore[no-untyp
         work: as left by `kernels.field.fields`.
         count: how many points.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         lo: out, shape (BLOCK,) [rad/m].
         hi: out, shape (BLOCK,) [rad/m].
         spare: out, shape (2, BLOCK): by how much the joints that bound the interval outrun the threshold where their
@@ -83,7 +83,7 @@ def living(arm, plane, posture, s, spins, count, side, held, grain, room, parts)
         spins: set of spins, shape (KEPT, 2); intervals that overlap are joined.
         count: how many intervals it has.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         room: what `workspace` returns.
         parts: out, shape (KEPT, 4): LEFT, RIGHT, LOW and HIGH of each interval.
@@ -172,7 +172,7 @@ def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  #
         plane: `TwistPlane`.
         posture: 0..3.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         room: as `living` takes it.
@@ -189,7 +189,7 @@ def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  #
     for k in range(count):
         spins[k, 0], spins[k, 1] = tube[rows, 2 + 2 * k], tube[rows, 3 + 2 * k]
     middle = 0.5 * (tube[0, 2] + tube[0, 3])
-    low, high = middle - held.longest_twist, middle + held.longest_twist
+    low, high = middle - held.longest, middle + held.longest
     if held.psi_bound > 0.0:
         low, high = max(low, -held.psi_bound), min(high, held.psi_bound)
     while rows < MAX_ROWS:

@@ -47,7 +47,7 @@ def viable(arm, plane, branch, side, held, limited, grain, depth, room, tube, ro
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         depth: [m], no more than the tube gets to.
@@ -95,7 +95,7 @@ def pair_bound(arm, plane, branch, sense, held, limited, grain, low, high, enoug
         branch: 0..7.
         sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,); the second leg has the
             opposite ones.
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         low: least spin at the target [rad].
@@ -141,7 +141,7 @@ def pair_meets(arm, plane, branch, sense, held, limited, grain, depth, room, tub
         plane: `TwistPlane`.
         branch: 0..7.
         sense: see `pair_bound`.
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         depth: [m], no more than `pair_bound` has found.
@@ -184,7 +184,7 @@ def pair_depth(  # type: ignore[no-untyped-def]
         plane: `TwistPlane`.
         branch: 0..7.
         sense: see `pair_bound`.
-        held: `Held`.
+        held: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         least: a depth below which nothing is asked for [m].

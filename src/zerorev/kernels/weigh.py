@@ -4,7 +4,7 @@
 their motion: that is all that tells one slope from another while nothing turns round inside the leg.
 
 Lengths in m, angles in rad, rates outwards in rad/m. No kernel raises.
-`asked` is a `zerorev.search.problem.Asked` throughout.
+`asked` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):
         slope: twist rate [rad/m].
         length: of the leg [m].
         held: (sense, keep, at_target), see `judge_leg`.
-        asked: `Asked`.
+        asked: `Constraints`.
         nodes: points on the leg, at most BLOCK.
         work: room for `fields`; NaN in the row MOTION where a node is out of reach.
     """
@@ -76,7 +76,7 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
         psi_t: spin at the target [rad].
         slope: twist rate [rad/m].
         held: (sense, keep, at_target), see `judge_leg`.
-        asked: `Asked`; limits that are infinite are not looked at.
+        asked: `Constraints`; limits that are infinite are not looked at.
         nodes: points on the leg, at most BLOCK.
         work: room for `fields`.
 
@@ -160,7 +160,7 @@ def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, cei
         count: how many slopes.
         sense: see `judge_leg`.
         keep: see `judge_leg`.
-        asked: `Asked`.
+        asked: `Constraints`.
         work: room for `fields`.
         ceiling: out: [rad/m], -inf where a leg cannot be run.
         travel: out: [rad], inf where a leg cannot be run.

@@ -14,11 +14,10 @@ from typing import Protocol
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Measures, Score, V
 from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, steady_rates
 from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.motion.kinematics import jacobian
@@ -176,26 +175,26 @@ def objective_of(settings: Settings) -> Objective:
     return Objective(tuple((weight, CRITERIA[name]) for name, weight in weights))
 
 
-def measure(robot: Robot, tool: Tool, hole: Hole, evaluation: Evaluation, settings: Settings) -> Measures[float]:
+def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> Measures[float]:
     """What the criteria measure of a motion that can be run, on its legs.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         evaluation: of the motion, with a score.
         settings: for the rule of the motion threshold, the feed of the plunge and the stiffness of the joints.
     """
     motion, score = evaluation.motion, evaluation.score
     assert motion is not None
     assert score is not None
-    profile, limits, steady = motion.profile, robot.limits, steady_rates(score, settings)
+    profile, limits, steady = motion.profile, drilling.robot.limits, steady_rates(score, settings)
     plunge = slice(profile.corner)
     points = profile.at(sample_distances(profile, SAMPLES))
-    joints = joints_along(robot, tool, hole, motion.branch, *points)
+    joints = joints_along(drilling, motion.branch, *points)
     axial = lateral = np.full(1, np.nan)
     if settings.joint_stiffness is not None:
-        axial, lateral = compliance(jacobian(robot, tool, joints), settings.joint_stiffness, hole.direction)
+        axial, lateral = compliance(
+            jacobian(drilling.robot, drilling.tool, joints), settings.joint_stiffness, drilling.hole.direction
+        )
     return Measures(
         travel=score.travel,
         margin=float(steady.min()) if steady.size else 0.0,
@@ -204,7 +203,7 @@ def measure(robot: Robot, tool: Tool, hole: Hole, evaluation: Evaluation, settin
         limit_distance=float((2 * score.limit_distance / (limits.upper - limits.lower)).min()),
         compliance_axial=float(axial.max()),
         compliance_lateral=float(lateral.max()),
-        manipulability=float(manipulability(robot, joints).min()),
+        manipulability=float(manipulability(drilling.robot, joints).min()),
     )
 
 

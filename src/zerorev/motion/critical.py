@@ -8,14 +8,11 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import joint_rates
+from zerorev.model.robot import NIL_RATE
+from zerorev.motion.drilling import Drilling, joint_rates
 
-__all__ = ["CriticalRates", "bracket", "critical", "critical_at"]
+__all__ = ["NO_LEVER", "CriticalRates", "bracket", "critical", "critical_at", "kappa_of", "spread_of"]
 
-UNMOVED = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm: below it a joint does not move
 NO_LEVER = 1e-12  # of theta_psi: below it the spin does not move a joint
 
 
@@ -41,10 +38,7 @@ class CriticalRates:
     @property
     def spread(self) -> float:
         """The twist spread, max kappa - min kappa [rad/m]; NaN where the branch cannot reach."""
-        known = self.kappa[~np.isnan(self.kappa)]
-        if known.size == 0:
-            return float("nan")
-        return float("inf") if np.isinf(known).any() else float(known.max() - known.min())
+        return float(spread_of(self.kappa))
 
     @property
     def width(self) -> float:
@@ -53,14 +47,12 @@ class CriticalRates:
 
 
 def critical(
-    robot: Robot, tool: Tool, hole: Hole, branch: int, psi: float, min_rate: float = 0.0, *, standoff: float = 0.0
+    drilling: Drilling, branch: int, psi: float, min_rate: float = 0.0, *, standoff: float = 0.0
 ) -> CriticalRates:
     """The critical rates of a hole at one spin on one branch.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin.
+        drilling: robot, tool and hole: target, direction and reference of the spin.
         branch: 0..7.
         psi: spin there [rad].
         min_rate: motion threshold [rad/m] that widens the bracket.
@@ -71,14 +63,14 @@ def critical(
     """
     if branch not in range(8):
         raise InputError(f"branch {branch}", where="branch", accepted="0 to 7")
-    theta_s, theta_psi = (rates[branch] for rates in joint_rates(robot, tool, hole, standoff, psi))
+    theta_s, theta_psi = (rates[branch] for rates in joint_rates(drilling, standoff, psi))
     below, above = bracket(theta_s, theta_psi, min_rate)
-    return CriticalRates(branch, psi, _kappa(theta_s, theta_psi), float(below), float(above))
+    return CriticalRates(branch, psi, kappa_of(theta_s, theta_psi), float(below), float(above))
 
 
-def critical_at(robot: Robot, tool: Tool, hole: Hole, psi: float, min_rate: float = 0.0) -> tuple[CriticalRates, ...]:
+def critical_at(drilling: Drilling, psi: float, min_rate: float = 0.0) -> tuple[CriticalRates, ...]:
     """The critical rates of a hole at one spin [rad] on every branch that reaches it and is not singular there."""
-    found = (critical(robot, tool, hole, branch, psi, min_rate) for branch in range(8))
+    found = (critical(drilling, branch, psi, min_rate) for branch in range(8))
     return tuple(each for each in found if not np.isnan(each.spread))
 
 
@@ -87,7 +79,7 @@ def bracket(theta_s: Array, theta_psi: Array, min_rate: float) -> tuple[Array, A
 
     For a joint's rate to be `min_rate`, the slope has to lie that much beyond its critical rate.
     """
-    kappa = _kappa(theta_s, theta_psi)
+    kappa = kappa_of(theta_s, theta_psi)
     with np.errstate(divide="ignore", invalid="ignore"):
         beyond = min_rate / np.abs(theta_psi)
     still = np.isnan(kappa) & ~np.isnan(theta_s)  # a joint that does not move at all does not reverse
@@ -98,7 +90,15 @@ def bracket(theta_s: Array, theta_psi: Array, min_rate: float) -> tuple[Array, A
     return below, above
 
 
-def _kappa(theta_s: Array, theta_psi: Array) -> Array:
+def kappa_of(theta_s: Array, theta_psi: Array) -> Array:
+    """Critical rates [rad/m] of theta_s [rad/m] and theta_psi [1], each (..., 6), as `CriticalRates` has them."""
     with np.errstate(divide="ignore", invalid="ignore"):
         kappa = np.where(np.abs(theta_psi) <= NO_LEVER, np.inf, -theta_s / theta_psi)
-    return np.where((np.abs(theta_s) <= UNMOVED) & (np.abs(theta_psi) <= NO_LEVER), np.nan, kappa)
+    return np.where((np.abs(theta_s) <= NIL_RATE) & (np.abs(theta_psi) <= NO_LEVER), np.nan, kappa)
+
+
+def spread_of(kappa: Array) -> Array:
+    """Twist spread [rad/m], shape (...,), of critical rates (..., 6): inf where one is, NaN where none is known."""
+    with np.errstate(invalid="ignore"):
+        spread = np.fmax.reduce(kappa, axis=-1) - np.fmin.reduce(kappa, axis=-1)
+    return np.where(np.isinf(kappa).any(axis=-1), np.inf, spread)

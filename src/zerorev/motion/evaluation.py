@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from zerorev.kernels.layout import TwistPlane
 from zerorev.kernels.motion import follow, turning_points
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
@@ -15,10 +16,10 @@ from zerorev.model.profile import Profile
 from zerorev.model.resized import resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import JUMP, SAMPLES, JointPath, choose_turns, joint_path
-from zerorev.motion.kinematics import TwistPlane, twist_plane
 
-__all__ = ["Evaluation", "evaluate", "event_distance", "meets_threshold", "steady_rates"]
+__all__ = ["Evaluation", "evaluate", "evaluated", "event_distance", "meets_threshold", "steady_rates"]
 
 FEW_TURNS = 32  # reversals for which there is room at first
 
@@ -71,8 +72,12 @@ def evaluate(
         branch: 0..7.
         settings: whose `near_joints` chooses the turns.
     """
-    near = settings.near_joints if settings else None
-    plane = twist_plane(robot, tool, hole)
+    return evaluated(Drilling(robot, tool, hole), profile, branch, settings)
+
+
+def evaluated(drilling: Drilling, profile: Profile, branch: int, settings: Settings | None = None) -> Evaluation:
+    """`evaluate` of a hole whose twist plane is known."""
+    robot, plane, near = drilling.robot, drilling.plane, settings.near_joints if settings else None
     events, min_rate = _turning_points(robot, plane, profile, branch)
     # travel and extents are taken through the very points where a joint turns
     turns = np.array([(segment, place) for segment, place, _ in events if place > 0.0]).reshape(-1, 2)
@@ -83,12 +88,12 @@ def evaluate(
     )  # fmt: skip
     full_turns, over = choose_turns(low, high, robot.limits, near) if runs else (np.zeros(6), ())
     if over or not runs:
-        path = joint_path(robot, tool, hole, profile, branch, near=near)
+        path = joint_path(drilling, profile, branch, near=near)
         if path.runs:
             segments = turns[:, 0].astype(int)
             through = profile.distance[segments] + turns[:, 1] * np.abs(np.diff(profile.standoff))[segments]
-            path = joint_path(robot, tool, hole, profile, branch, near=near, through=through.tolist())
-        return Evaluation(None, None, _faults(robot, hole, branch, path))
+            path = joint_path(drilling, profile, branch, near=near, through=through.tolist())
+        return Evaluation(None, None, _faults(robot, drilling.hole, branch, path))
     legs = profile.standoff[[0, -1]] - profile.standoff[profile.corner]
     limits = robot.limits
     score = Score(

@@ -12,12 +12,10 @@ import numpy.typing as npt
 from zerorev.kernels import arm as kernels
 from zerorev.kernels.field import rates
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.plan import Motion
 from zerorev.model.profile import Profile
-from zerorev.model.robot import JointLimits, Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import twist_plane
+from zerorev.model.robot import JointLimits
+from zerorev.motion.drilling import Drilling
 
 __all__ = [
     "JUMP",
@@ -78,14 +76,14 @@ def sample_distances(profile: Profile, samples: int, through: Sequence[float] = 
     return np.sort(np.concatenate([*parts, knots[-1:], np.array(through)]))
 
 
-def joints_along(robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array) -> Array:
+def joints_along(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Array:
     """Continuous controller angles [rad], shape (N, 6), along points (N,) of the twist plane that lie close together.
 
     The first reachable row lies within (-pi, pi]; rows out of reach are NaN.
     """
     joints = np.empty((standoff.size, 6))
     kernels.angles_along(
-        robot.arm, twist_plane(robot, tool, hole), np.ascontiguousarray(standoff, dtype=float),
+        drilling.robot.arm, drilling.plane, np.ascontiguousarray(standoff, dtype=float),
         np.ascontiguousarray(psi, dtype=float), branch, joints,
     )  # fmt: skip
     reached = ~np.isnan(joints[:, 0])
@@ -136,9 +134,7 @@ def turns_within(
 
 
 def joint_path(
-    robot: Robot,
-    tool: Tool,
-    hole: Hole,
+    drilling: Drilling,
     profile: Profile,
     branch: int,
     *,
@@ -149,9 +145,7 @@ def joint_path(
     """The joints along a motion on one branch (thesis eq. 3.20, 4.5), turns chosen for the whole path.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         near: see `choose_turns`.
@@ -160,26 +154,24 @@ def joint_path(
     """
     distance = sample_distances(profile, samples, through)
     standoff, psi = profile.at(distance)
-    joints = joints_along(robot, tool, hole, branch, standoff, psi)
+    joints = joints_along(drilling, branch, standoff, psi)
     lost = np.flatnonzero(np.isnan(joints[:, 0]))
     if lost.size:
         return JointPath(distance, standoff, psi, joints, float(standoff[lost[0]]), None, ())
     steps = np.abs(np.diff(joints, axis=0)).max(axis=1)
     jumps = np.flatnonzero(steps > JUMP)
-    turns, over = choose_turns(joints.min(axis=0), joints.max(axis=0), robot.limits, near)
+    turns, over = choose_turns(joints.min(axis=0), joints.max(axis=0), drilling.robot.limits, near)
     jump = float(standoff[jumps[0]]) if jumps.size else None
     return JointPath(distance, standoff, psi, joints + turns, None, jump, over)
 
 
-def outward_rates(
-    robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array, twist_rate: float | Array
-) -> Array:
+def outward_rates(drilling: Drilling, branch: int, standoff: Array, psi: Array, twist_rate: float | Array) -> Array:
     """D theta / d s at points (N,) of legs of slope u [rad/m], read outwards [rad/m], shape (N, 6) (theory §2)."""
     theta_s, theta_psi = np.empty((2, 6, standoff.size))
     rates(
-        robot.arm, twist_plane(robot, tool, hole), branch // 2, np.ascontiguousarray(standoff),
+        drilling.robot.arm, drilling.plane, branch // 2, np.ascontiguousarray(standoff),
         np.ascontiguousarray(psi), theta_s, theta_psi,
     )  # fmt: skip
     found = (theta_s + twist_rate * theta_psi).T
-    found[:, 4] *= kernels.flip_sign(robot.arm, branch)
+    found[:, 4] *= kernels.flip_sign(drilling.robot.arm, branch)
     return found

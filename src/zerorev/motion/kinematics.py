@@ -1,69 +1,36 @@
-"""The typed, shape-checked face of `kernels.arm`: poses, joints, and the two rate fields of a hole's twist plane."""
+"""The typed, shape-checked face of `kernels.arm`: poses and joints."""
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from zerorev.errors import InputError
 from zerorev.kernels import arm as kernels
-from zerorev.kernels.field import rates
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
 __all__ = [
-    "TwistPlane",
-    "critical_rates",
     "forward",
     "inverse",
     "jacobian",
-    "joint_rates",
     "tcp_pose",
-    "twist_plane",
+    "wrist_in_tcp",
     "wrist_offset",
 ]
 
 
-class TwistPlane(NamedTuple):
-    """What a kernel needs to know of a hole and a tool (theory §1): plain numbers, so that kernels hold them all.
-
-    Attributes:
-        target: bottom of the hole [m].
-        R_base_tcp0: rotation of the tcp frame at psi = 0, row by row.
-        R_tcp_flange: rotation of the flange in the tcp frame, row by row.
-        wrist: wrist centre in the tcp frame [m].
-    """
-
-    target: tuple[float, ...]
-    R_base_tcp0: tuple[float, ...]
-    R_tcp_flange: tuple[float, ...]
-    wrist: tuple[float, ...]
-
-
-def twist_plane(robot: Robot, tool: Tool, hole: Hole) -> TwistPlane:
-    """The twist plane of a hole drilled by a tool on a robot (theory §1)."""
-    (y0, y1, y2), (d0, d1, d2) = hole.psi_zero.tolist(), hole.direction.tolist()
-    x0, x1, x2 = y2 * d1 - y1 * d2, y0 * d2 - y2 * d0, y1 * d0 - y0 * d1
-    return TwistPlane(
-        target=tuple(hole.target.tolist()),
-        R_base_tcp0=(x0, y0, -d0, x1, y1, -d1, x2, y2, -d2),
-        R_tcp_flange=tuple(tool.T_flange_tcp[:3, :3].T.ravel().tolist()),
-        wrist=tuple(_wrist_in_tcp(robot, tool).tolist()),
-    )
-
-
-def _wrist_in_tcp(robot: Robot, tool: Tool) -> Array:
+def wrist_in_tcp(robot: Robot, tool: Tool) -> Array:
+    """The wrist centre in the tcp frame [m], shape (3,) (theory §1)."""
     R, tip = tool.T_flange_tcp[:3, :3], tool.T_flange_tcp[:3, 3]
     return np.asarray(R.T @ (np.array([0.0, 0.0, -robot.arm.c4]) - tip))
 
 
 def wrist_offset(robot: Robot, tool: Tool) -> float:
     """Distance e [m] of the wrist centre from the drill axis, the lever of the spin (theory §1)."""
-    wrist = _wrist_in_tcp(robot, tool)
+    wrist = wrist_in_tcp(robot, tool)
     return float(np.hypot(wrist[0], wrist[1]))
 
 
@@ -150,30 +117,3 @@ def jacobian(robot: Robot, tool: Tool, joints: npt.ArrayLike) -> Array:
     tcp = T[..., :3, :3] @ tool.T_flange_tcp[:3, 3] + T[..., :3, 3]
     columns = np.concatenate([np.cross(axes, tcp[..., None, :] - places), axes], axis=-1) * sign[:, None]
     return np.asarray(np.swapaxes(columns, -1, -2))
-
-
-def joint_rates(
-    robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike
-) -> tuple[Array, Array]:
-    """theta_s [rad/m] and theta_psi [1], each (..., 8, 6), at points (...,) of the hole's twist plane (theory §1).
-
-    NaN where a branch cannot reach, and at the singularities of shoulder, elbow and wrist.
-    """
-    standoff, psi = np.broadcast_arrays(np.asarray(standoff, dtype=float), np.asarray(psi, dtype=float))
-    s, p = np.ascontiguousarray(standoff.ravel()), np.ascontiguousarray(psi.ravel())
-    plane = twist_plane(robot, tool, hole)
-    fields = np.empty((2, 4, 6, s.size))
-    for posture in range(4):
-        rates(robot.arm, plane, posture, s, p, fields[0, posture], fields[1, posture])
-    # the two wrist flips share their rates, but for the sign of joint 5
-    branches = np.repeat(np.moveaxis(fields, -1, 1), 2, axis=2)
-    branches[..., 4] *= [kernels.flip_sign(robot.arm, branch) for branch in range(8)]
-    theta_s, theta_psi = branches.reshape(2, *standoff.shape, 8, 6)
-    return theta_s, theta_psi
-
-
-def critical_rates(robot: Robot, tool: Tool, hole: Hole, standoff: npt.ArrayLike, psi: npt.ArrayLike) -> Array:
-    """Kappa [rad/m], shape (..., 8, 6): the twist rates at which a joint stands still (theory §2)."""
-    theta_s, theta_psi = joint_rates(robot, tool, hole, standoff, psi)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(-theta_s / theta_psi)

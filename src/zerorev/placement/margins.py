@@ -10,6 +10,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.job import Job
+from zerorev.motion.drilling import Drilling
 from zerorev.placement.freedom import job_at
 from zerorev.search.optimum import deepest_as_drilled
 from zerorev.workers import Workers
@@ -81,7 +82,9 @@ class Asked:
         except InputError:  # the reference of the spin has no meaning there, so no job could stand there
             return np.array([-hole.depth for hole in self.job.holes])
         for k in look.order:
-            deepest = deepest_as_drilled(moved.robot, moved.tool, moved.holes[k], moved.settings.without_proof)
+            deepest = deepest_as_drilled(
+                Drilling(moved.robot, moved.tool, moved.holes[k]), moved.settings.without_proof
+            )
             margins[k] = deepest.depth - moved.holes[k].depth
             if margins[k] <= look.enough:
                 break

@@ -15,6 +15,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.search.optimum import deepest_as_drilled
 from zerorev.workers import Workers
 
@@ -126,8 +127,8 @@ class _Depth:
         self.robots = robots
 
     def __call__(self, asked: tuple[int, Hole]) -> float:
-        robot, hole = asked
-        return deepest_as_drilled(*self.robots[robot][:2], hole, self.robots[robot][2].without_proof).depth
+        robot, tool, settings = self.robots[asked[0]]
+        return deepest_as_drilled(Drilling(robot, tool, asked[1]), settings.without_proof).depth
 
 
 def _check_same(jobs: Sequence[Job]) -> None:

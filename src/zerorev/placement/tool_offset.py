@@ -18,6 +18,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.search.optimum import deepest_as_drilled
 
 __all__ = ["LeastOffset", "OffsetCurve", "least_offset", "offset_curve", "offset_of", "with_offset"]
@@ -133,7 +134,7 @@ def offset_curve(
         if progress:
             progress(done, deepest.size)
         moved = with_offset(robot, tool, float(e[i]), float(a[j]))
-        deepest[i, j, k] = deepest_as_drilled(robot, moved, holes[k], settings.without_proof).depth
+        deepest[i, j, k] = deepest_as_drilled(Drilling(robot, moved, holes[k]), settings.without_proof).depth
     if progress:
         progress(deepest.size, deepest.size)
     return OffsetCurve(e, a, deepest, np.array([hole.depth for hole in holes]))

@@ -16,7 +16,8 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.criteria import measure, thesis_objective
 from zerorev.motion.critical import critical
-from zerorev.motion.evaluation import evaluate, meets_threshold
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
@@ -48,17 +49,17 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         the motion with its score, the baseline with constant spin, the outcome of the check, and findings. A hole that
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
-    settings = settings or Settings()
-    if too_short(robot, hole):
-        return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=(_why_too_short(robot, hole),))
+    settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    if too_short(drilling):
+        return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
-        found = optimum(robot, tool, hole, settings)
-        answer = _planned(robot, tool, hole, settings, found.motion)
+        found = optimum(drilling, settings)
+        answer = _planned(drilling, settings, found.motion)
         if found.optimality is not None:
             answer = _with_optimality(robot, settings, answer, found.motion, found.optimality)
         return _with_deepest(answer, settings, found.deepest)
-    answer = _evaluated(robot, tool, hole, settings, hole.profile)
-    return _with_deepest(answer, settings, deepest_as_drilled(robot, tool, hole, settings))
+    answer = _evaluated(drilling, settings, hole.profile)
+    return _with_deepest(answer, settings, deepest_as_drilled(drilling, settings))
 
 
 def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> HolePlan:
@@ -75,27 +76,27 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
         status is `infeasible` and the hole is as it was.
     """
-    settings = settings or Settings()
-    deepest = deepest_as_drilled(robot, tool, hole, settings)
-    hole = replace(hole, profile=None)
+    settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    deepest = deepest_as_drilled(drilling, settings)
+    drilling = drilling.without_motion()
+    hole = drilling.hole
     if deepest.profile is None or deepest.branch is None:
-        findings = _why_none(robot, tool, hole, settings)
-        answer = HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
+        findings = _why_none(drilling, settings)
+        answer = HolePlan(hole, "infeasible", drilling.wrist_offset, findings=findings)
         return _with_deepest(answer, settings, deepest)
     why = None
     for share in SHARES:
-        shorter = replace(hole, depth=share * deepest.depth)
-        order = Order(robot, tool, shorter, settings)
-        cut = order.candidate(cut_short(deepest.profile, shorter.depth), deepest.branch)
-        answer = _answered(robot, tool, shorter, settings, "planned", cut)
+        shorter = drilling.deep(share * deepest.depth)
+        cut = Order(shorter, settings).candidate(cut_short(deepest.profile, shorter.hole.depth), deepest.branch)
+        answer = _answered(shorter, settings, "planned", cut)
         if answer.verified is not None and answer.verified.passed:
             found = () if why is None else (_rejected("a deeper motion without a reversal", why, hole),)
             answer = replace(answer, findings=(*answer.findings, *found))
-            return _with_deepest(answer, settings, replace(deepest, depth=shorter.depth))
+            return _with_deepest(answer, settings, replace(deepest, depth=shorter.hole.depth))
         why = why or (answer.verified.failures[0] if answer.verified else "it cannot be run")
     message = f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
     findings = (Finding("error", "verification", message, hole.id),)
-    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings, deepest=0.0)
+    return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=findings, deepest=0.0)
 
 
 def _rejected(what: str, why: str, hole: Hole) -> Finding:
@@ -103,79 +104,75 @@ def _rejected(what: str, why: str, hole: Hole) -> Finding:
     return Finding("warning", "rejected", f"{what} was found, but does not pass the check: {why}", hole.id)
 
 
-def _planned(robot: Robot, tool: Tool, hole: Hole, settings: Settings, best: Candidate | None) -> HolePlan:
+def _planned(drilling: Drilling, settings: Settings, best: Candidate | None) -> HolePlan:
     """The answer that the best motion makes; where it does not pass the check, the best one found that does."""
-    answer = _answered(robot, tool, hole, settings, "planned", best)
+    answer = _answered(drilling, settings, "planned", best)
     if answer.verified is None or answer.verified.passed:
         return answer
     why = answer.verified.failures[0]
-    for other in alternatives(robot, tool, hole, settings):
-        tried = _answered(robot, tool, hole, settings, "planned", other)
+    for other in alternatives(drilling, settings):
+        tried = _answered(drilling, settings, "planned", other)
         if tried.verified is not None and tried.verified.passed:
             assert answer.score is not None
-            rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, hole)
+            rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, drilling.hole)
             return replace(tried, findings=(*tried.findings, rejected))
     message = f"no motion was found that passes the check; of the best one: {why}"
-    findings = (Finding("error", "verification", message, hole.id),)
-    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=findings)
+    findings = (Finding("error", "verification", message, drilling.hole.id),)
+    return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=findings)
 
 
 def _answered(
-    robot: Robot,
-    tool: Tool,
-    hole: Hole,
+    drilling: Drilling,
     settings: Settings,
     status: Literal["planned", "evaluated"],
     best: Candidate | None,
 ) -> HolePlan:
     """The answer that the best motion makes, with its baseline, checked, and with what a user should know of it."""
-    offset = wrist_offset(robot, tool)
+    robot, tool, hole, offset = drilling.robot, drilling.tool, drilling.hole, drilling.wrist_offset
     if best is None:
-        return HolePlan(hole, "infeasible", offset, findings=_why_infeasible(robot, tool, hole, settings))
+        return HolePlan(hole, "infeasible", offset, findings=_why_infeasible(drilling, settings))
     answer = HolePlan(
         hole=hole,
         status=status,
         wrist_offset=offset,
         motion=best.evaluation.motion,
         score=best.score,
-        measures=measure(robot, tool, hole, best.evaluation, settings),
-        baseline=_baseline(robot, tool, hole, best.profile, best.branch, settings),
-        critical_rates=_critical_rates(robot, tool, hole, best.profile, best.branch),
+        measures=measure(drilling, best.evaluation, settings),
+        baseline=_baseline(drilling, best.profile, best.branch, settings),
+        critical_rates=_critical_rates(drilling, best.profile, best.branch),
     )
     verified = verify_hole(robot, tool, settings, answer)
     answer = replace(answer, verified=verified)
     return replace(answer, findings=motion_findings(robot, settings, answer))
 
 
-def _evaluated(robot: Robot, tool: Tool, hole: Hole, settings: Settings, profile: Profile) -> HolePlan:
+def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:
     """The answer to a given motion on its branch; where none is given, on the one that thesis eq. 4.7 prefers.
 
     Which branch a published motion belongs to is no question of the motion threshold, so the thesis' own objective
     answers it, and not the order by which motions are searched for.
     """
-    branches = range(8) if hole.branch is None else (hole.branch,)
-    order = Order(robot, tool, hole, settings)
-    evaluations = {branch: evaluate(robot, tool, hole, profile, branch, settings) for branch in branches}
+    branches = range(8) if drilling.hole.branch is None else (drilling.hole.branch,)
+    order = Order(drilling, settings)
+    evaluations = {branch: evaluated(drilling, profile, branch, settings) for branch in branches}
     branch = min(branches, key=lambda branch: thesis_objective(evaluations[branch]))
     best = order.judged(profile, branch, evaluations[branch])
     if best is not None:
-        return _answered(robot, tool, hole, settings, "evaluated", best)
-    return HolePlan(hole, "infeasible", wrist_offset(robot, tool), findings=evaluations[branch].findings)
+        return _answered(drilling, settings, "evaluated", best)
+    return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=evaluations[branch].findings)
 
 
-def _baseline(
-    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings
-) -> Baseline | None:
+def _baseline(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Baseline | None:
     """The same hole drilled with psi = psi_start on the same branch, if that can be run."""
     constant = Profile(profile.standoff[[0, profile.corner, -1]], np.full(3, profile.psi[0]))
-    score = evaluate(robot, tool, hole, constant, branch, settings).score
+    score = evaluated(drilling, constant, branch, settings).score
     return None if score is None else Baseline(score.reversals_per_joint, score.travel)
 
 
-def _critical_rates(robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int) -> Array:
+def _critical_rates(drilling: Drilling, profile: Profile, branch: int) -> Array:
     """The critical rates at the corner of the motion, which its legs bracket where no joint reverses there."""
     corner = profile.corner
-    return critical(robot, tool, hole, branch, profile.psi[corner], standoff=profile.standoff[corner]).kappa
+    return critical(drilling, branch, profile.psi[corner], standoff=profile.standoff[corner]).kappa
 
 
 def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
@@ -263,21 +260,21 @@ def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:
     return ()
 
 
-def _why_infeasible(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
+def _why_infeasible(drilling: Drilling, settings: Settings) -> tuple[Finding, ...]:
     """Which of reach, limits or the bound on the spin leaves no motion at all."""
-    wide = replace(robot, limits=replace(robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi)))
-    if can_run(wide, tool, hole, settings):
+    limits = replace(drilling.robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi))
+    if can_run(replace(drilling, robot=replace(drilling.robot, limits=limits)), settings):
         spins = "" if settings.psi_bound is None else f" within +-{np.rad2deg(settings.psi_bound):g} deg of spin"
         message = f"no branch drills it within the joint limits{spins}"
-        if settings.keep_lead_in and can_run(robot, tool, hole, settings):
+        if settings.keep_lead_in and can_run(drilling, settings):
             message = (
                 f"no motion was found whose whole lead-in of {settings.lead_in * 1e3:g} mm runs without a reversal"
             )
-            return (Finding("error", "lead_in", message, hole.id),)
-        return (Finding("error", "limit", message, hole.id),)
-    where = ", ".join(f"{value:.1f}" for value in hole.target * 1e3)
+            return (Finding("error", "lead_in", message, drilling.hole.id),)
+        return (Finding("error", "limit", message, drilling.hole.id),)
+    where = ", ".join(f"{value:.1f}" for value in drilling.hole.target * 1e3)
     message = f"out of reach: no branch and spin brings the tool along the axis at ({where}) mm"
-    return (Finding("error", "unreachable", message, hole.id),)
+    return (Finding("error", "unreachable", message, drilling.hole.id),)
 
 
 def _why_too_short(robot: Robot, hole: Hole) -> Finding:
@@ -287,12 +284,12 @@ def _why_too_short(robot: Robot, hole: Hole) -> Finding:
     return Finding("error", "depth", message, hole.id)
 
 
-def _why_none(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> tuple[Finding, ...]:
+def _why_none(drilling: Drilling, settings: Settings) -> tuple[Finding, ...]:
     """Why no stroke, however short, has zero reversals."""
-    short = replace(hole, depth=SHORT * robot.size)
-    if not can_run(robot, tool, short, settings):
-        return _why_infeasible(robot, tool, short, settings)
+    short = drilling.deep(SHORT * drilling.robot.size)
+    if not can_run(short, settings):
+        return _why_infeasible(short, settings)
     rate = (
         f" while every joint moves {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm or more" if settings.min_rate else ""
     )
-    return (Finding("error", "no_stroke", f"no stroke, however short, is without a reversal{rate}", hole.id),)
+    return (Finding("error", "no_stroke", f"no stroke, however short, is without a reversal{rate}", drilling.hole.id),)

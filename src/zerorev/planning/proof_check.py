@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.proof_tree import ProofCheck, ProofTree
+from zerorev.motion.drilling import Drilling
 from zerorev.search.optimum import deepest_as_drilled, optimum, too_short
 from zerorev.verify.optimality.claims import down_to_the_corner, statements
 from zerorev.verify.optimality.prove import check_tree
@@ -79,12 +80,12 @@ def logged_trees(plan: Plan, stated: HolePlan) -> list[ProofTree]:
     """
     trees: list[ProofTree] = []
     nothing = stated.optimality is None and stated.deepest_at_most is None
-    if nothing or plan.settings.legs == "free" or too_short(plan.robot, stated.hole):
+    if nothing or plan.settings.legs == "free" or too_short(Drilling(plan.robot, plan.tool, stated.hole)):
         return trees
     hole = stated.hole
     if stated.optimality is None:
         given = hole if stated.motion is None or hole.profile else replace(hole, profile=stated.motion.profile)
-        deepest_as_drilled(plan.robot, plan.tool, given, plan.settings, trees)
+        deepest_as_drilled(Drilling(plan.robot, plan.tool, given), plan.settings, trees)
     else:
-        optimum(plan.robot, plan.tool, hole, plan.settings, trees)
+        optimum(Drilling(plan.robot, plan.tool, hole), plan.settings, trees)
     return trees

@@ -23,6 +23,7 @@ from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Motion, Optimality
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.hole import lever_findings, motion_findings, plan, plan_deepest
 from zerorev.search.rank import Candidate, Order
@@ -260,7 +261,7 @@ def _turn_differs(robot: Robot, settings: Settings, motion: Motion, own: Figures
 
 def _improved(robot: Robot, tool: Tool, settings: Settings, found: HolePlan, again: HolePlan) -> Iterator[str]:
     """A motion that is stated as the best must not be beaten by the one that is found when it is searched for again."""
-    order = Order(robot, tool, found.hole, settings)
+    order = Order(Drilling(robot, tool, found.hole), settings)
     ours, theirs = _candidate(order, found), _candidate(order, again)
     if ours is None or theirs is None:
         return

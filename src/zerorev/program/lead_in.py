@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding, HolePlan
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.model.plan import Finding, Motion
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import FULL_TURN, joints_along, outward_rates
 
 __all__ = ["LeadIn", "find_lead_in"]
@@ -53,23 +52,22 @@ class _Trouble(NamedTuple):
 class _Line:
     """The plunge leg of a plan, continued backwards."""
 
-    def __init__(self, robot: Robot, tool: Tool, plan: HolePlan) -> None:
-        assert plan.motion is not None
-        self.robot, self.tool, self.hole, self.branch = robot, tool, plan.hole, plan.motion.branch
-        profile = plan.motion.profile
+    def __init__(self, drilling: Drilling, motion: Motion) -> None:
+        self.drilling, self.robot, self.branch = drilling, drilling.robot, motion.branch
+        profile = motion.profile
         self.depth, self.psi, self.slope = float(profile.standoff[0]), float(profile.psi[0]), profile.twist_rate[0]
-        self.joints = plan.motion.joints[0]
+        self.joints = motion.joints[0]
         self.directions = self._directions(float(profile.standoff[0] - profile.standoff[1]))
 
     def rates(self, standoff: Array) -> Array:
         """Outward rates [rad/m], shape (N, 6)."""
         psi = self.psi + self.slope * (standoff - self.depth)
-        return outward_rates(self.robot, self.tool, self.hole, self.branch, standoff, psi, float(self.slope))
+        return outward_rates(self.drilling, self.branch, standoff, psi, float(self.slope))
 
     def path(self, standoff: Array, anchor: Array) -> Array:
         """Joints with turns [rad], shape (N, 6), the first row nearest to `anchor`."""
         psi = self.psi + self.slope * (standoff - self.depth)
-        joints = joints_along(self.robot, self.tool, self.hole, self.branch, standoff, psi)
+        joints = joints_along(self.drilling, self.branch, standoff, psi)
         return np.asarray(joints + FULL_TURN * np.round((anchor - joints[0]) / FULL_TURN))
 
     def signs(self, rates: Array) -> Array:
@@ -108,16 +106,15 @@ class _Line:
         return _Trouble(index, why)
 
 
-def find_lead_in(robot: Robot, tool: Tool, plan: HolePlan, wanted: float) -> LeadIn:
-    """The lead-in of a planned hole: as long as asked for, or as long as can be had.
+def find_lead_in(drilling: Drilling, motion: Motion, wanted: float) -> LeadIn:
+    """The lead-in of a planned hole: as long as asked for, or as long as possible.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        plan: a hole's plan, with its motion.
+        drilling: robot, tool and hole.
+        motion: of the hole.
         wanted: length [m].
     """
-    line = _Line(robot, tool, plan)
+    line, robot = _Line(drilling, motion), drilling.robot
     if wanted <= 0:
         return LeadIn(0.0, line.joints, ())
     standoff = line.depth + np.linspace(0.0, wanted, SAMPLES)
@@ -140,7 +137,7 @@ def find_lead_in(robot: Robot, tool: Tool, plan: HolePlan, wanted: float) -> Lea
     else:
         first = line.path(line.depth + np.linspace(0.0, length, SAMPLES), line.joints)[-1]
     message = f"lead-in of {length * 1e3:.3f} mm instead of {wanted * 1e3:g} mm: further back {why}"
-    return LeadIn(length, first, (Finding("warning", "lead_in", message, plan.hole.id),))
+    return LeadIn(length, first, (Finding("warning", "lead_in", message, drilling.hole.id),))
 
 
 def _names(names: tuple[str, ...], broken: Array) -> list[str]:

@@ -18,6 +18,7 @@ from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array, transform
 from zerorev.model.job import Settings
 from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, named_holes
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.lead_in import find_lead_in
 from zerorev.program.waypoints import Waypoint, waypoints, with_blends
@@ -211,7 +212,7 @@ def _why_not(hole: HolePlan, errors: list[str]) -> str:
 
 def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Finding, ...]]:
     assert hole.motion is not None  # _why_not has seen to it
-    lead_in = find_lead_in(plan.robot, plan.tool, hole, plan.settings.lead_in)
+    lead_in = find_lead_in(Drilling(plan.robot, plan.tool, hole.hole), hole.motion, plan.settings.lead_in)
     points, corner = waypoints(hole.motion.profile, lead_in.length)
     points = with_blends(points, corner, plan.settings)
     T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)

@@ -6,6 +6,7 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import outward_rates
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.neutral import HoleProgram, LinearMove, Program
@@ -102,7 +103,7 @@ def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: L
     s = np.linspace(standoff, move.standoff, SAMPLES)
     spin = np.linspace(psi, move.psi, SAMPLES)
     slope = (move.psi - psi) / (move.standoff - standoff)
-    return outward_rates(plan.robot, plan.tool, hole_plan.hole, hole_plan.motion.branch, s, spin, slope)
+    return outward_rates(Drilling(plan.robot, plan.tool, hole_plan.hole), hole_plan.motion.branch, s, spin, slope)
 
 
 def _floored(feed_mm_s: float) -> str:

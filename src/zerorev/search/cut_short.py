@@ -10,10 +10,9 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
-from zerorev.motion.kinematics import twist_plane
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Goal, Legs, Rules, bettered, motion_of, sense_at
-from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
+from zerorev.search.segments import Goal, Legs, bettered, motion_of, sense_at
+from zerorev.search.straight import LEAST_RATE, constraints
 
 __all__ = ["cut_short", "descended", "legs_swapped", "steadied"]
 
@@ -85,17 +84,14 @@ def _moved(
     order: Order, branch: int, psi_t: float, slopes: Array, min_rate: float, goal: Goal | None
 ) -> Candidate | None:
     """Two straight legs, improved by small steps; the goal is that of the settings, where none is given."""
-    robot, settings, depth = order.robot, order.settings, order.hole.depth
-    plane = twist_plane(robot, order.tool, order.hole)
+    robot, settings, depth = order.drilling.robot, order.settings, order.drilling.hole.depth
+    plane = order.drilling.plane
     sense = sense_at(robot.arm, plane, branch // 2, psi_t)
     if sense is None:
         return None
     psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
-    legs, limits = Legs(np.array([[0.0, depth]] * 2), psi), robot.limits
-    rules = Rules(
-        limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, min_rate,
-        settings.max_twist if settings.legs == "free" else np.inf, settings.psi_bound or 0.0,
-    )  # fmt: skip
+    legs = Legs(np.array([[0.0, depth]] * 2), psi)
+    rules = constraints(robot, settings, min_rate, steepest=settings.max_twist if settings.legs == "free" else np.inf)
     moved, lack = bettered(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, looks=POINTS)
     if lack > ENOUGH_LACK:
         return None

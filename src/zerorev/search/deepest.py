@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import legs, pairs
+from zerorev.kernels.layout import LONGEST_TWIST, Constraints
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -21,15 +22,14 @@ from zerorev.model.profile import Profile
 from zerorev.model.resized import resized, resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.motion.evaluation import evaluate
-from zerorev.motion.kinematics import twist_plane
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.search.free_deepest import deepest_free
-from zerorev.search.problem import Asked
 from zerorev.search.rank import Candidate
-from zerorev.search.segments import STEPS, Goal, Legs, Rules, bettered, motion_of, sense_at
-from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, LONGEST_TWIST, target_spins
+from zerorev.search.segments import STEPS, Goal, Legs, bettered, motion_of, sense_at
+from zerorev.search.straight import GRID, LEAST_RATE, constraints, target_spins
 
-__all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_stroke"]
+__all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_of", "deepest_stroke"]
 
 FIRST_LOOK = 0.06  # of the stretched arm's length: about what a middling hole allows
 STEP = 1.5  # from one depth of the coarse look to the next
@@ -80,30 +80,33 @@ def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | No
         settings: whose `min_rate` every joint keeps at every point, whose `psi_bound` holds the spin, and whose `legs`
             are straight, or free with twist rates up to `max_twist`.
     """
-    settings = settings or Settings()
-    if robot.size != 1:
+    return deepest_of(Drilling(robot, tool, hole), settings or Settings())
+
+
+def deepest_of(drilling: Drilling, settings: Settings) -> Deepest:
+    """`deepest_stroke` of a hole whose twist plane is known."""
+    size = drilling.robot.size
+    if size != 1:
         # the tolerances of the search are made for one size of arm
-        found = deepest_stroke(*resized(robot, tool, replace(hole, profile=None), settings, 1 / robot.size))
-        return found.resized(robot.size)
-    straight = _Search(robot, tool, hole, settings).run()
+        robot, tool, hole, settings = resized(drilling.robot, drilling.tool, drilling.hole, settings, 1 / size)
+        return deepest_of(Drilling(robot, tool, hole), settings).resized(size)
+    straight = _Search(drilling, settings).run()
     if settings.legs == "straight":
         return straight
-    free = Deepest(*deepest_free(robot, tool, hole, settings))
+    free = Deepest(*deepest_free(drilling, settings))
     steepest = 0.0 if straight.profile is None else float(np.abs(straight.profile.twist_rate).max())
     beyond = 0.0
     if straight.depth > free.depth and steepest > settings.max_twist:
         beyond = straight.depth
-        straight = _Search(robot, tool, hole, settings, steepest=settings.max_twist).run()
+        straight = _Search(drilling, settings, steepest=settings.max_twist).run()
     return replace(straight if straight.depth > free.depth else free, beyond_cap=beyond)
 
 
-def deepened(robot: Robot, tool: Tool, hole: Hole, settings: Settings, motion: Candidate) -> Deepest:
+def deepened(drilling: Drilling, settings: Settings, motion: Candidate) -> Deepest:
     """The deepest stroke to which a motion leads; its own depth, at least.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin.
+        drilling: target, direction and reference of the spin.
         settings: as for `deepest_stroke`.
         motion: of zero reversals, every joint of which keeps `min_rate` at every point.
     """
@@ -111,7 +114,7 @@ def deepened(robot: Robot, tool: Tool, hole: Hole, settings: Settings, motion: C
     if motion.profile.psi.size > 3:
         return own
     steepest = settings.max_twist if settings.legs == "free" else np.inf
-    deeper = _Search(robot, tool, hole, settings, steepest=steepest).run_from(motion)
+    deeper = _Search(drilling, settings, steepest=steepest).run_from(motion)
     # less is no gain, so that from the end of a valley nothing goes on
     return deeper if deeper.depth > own.depth * (1 + WORTH_RAISING) else own
 
@@ -147,20 +150,17 @@ class _End:
 class _Search:
     """One hole, and its deepest pairs of straight legs."""
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, *, steepest: float = np.inf) -> None:
-        self.robot, self.tool, self.hole = robot, tool, hole
-        self.plane = twist_plane(robot, tool, hole)
+    def __init__(self, drilling: Drilling, settings: Settings, *, steepest: float = np.inf) -> None:
+        robot, hole = drilling.robot, drilling.hole
+        self.drilling, self.arm, self.plane = drilling, robot.arm, drilling.plane
         self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
         self.stretched = robot.reach
         self.min_rate = max(settings.min_rate, LEAST_RATE)
         self.psi_bound = settings.psi_bound
         self.psi = target_spins(settings.psi_bound, GRID)
-        limits = robot.limits
-        self.rules = Rules(
-            limits.lower + LIMIT_SLACK, limits.upper - LIMIT_SLACK, self.min_rate, steepest, settings.psi_bound or 0.0
-        )
+        self.rules = constraints(robot, settings, settings.min_rate, steepest=steepest)
         self.valleys: set[tuple[int, float, float]] = set()  # gone down: posture, depth, spin at the target
-        self.unlimited = self.rules._replace(lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
+        self.unlimited = self.rules.unlimited()
 
     def run(self) -> Deepest:
         """Look coarsely at growing depths, then go from the deepest that seem possible to the end of each valley."""
@@ -187,12 +187,9 @@ class _Search:
                 return settled
         return Deepest(0.0)
 
-    def asked(self, depth: float) -> Asked:
+    def asked(self, depth: float) -> Constraints:
         """What legs of a depth are held to."""
-        steepest = min(LONGEST_TWIST / depth, self.rules.steepest)
-        return Asked(
-            depth, self.min_rate, False, False, self.rules.lower, self.rules.upper, steepest, self.rules.psi_bound
-        )
+        return self.rules._replace(depth=depth, steepest=min(LONGEST_TWIST / depth, self.rules.steepest))
 
     def _looks(self) -> list[tuple[float, Array]]:
         """Depths at which some pair may do, least first, and what coarse looks found there, shape (4, K, LOOKED)."""
@@ -225,7 +222,7 @@ class _Search:
 
     def _look(self, depth: float, lines: npt.NDArray[np.bool_]) -> Array:
         out, asked, keep = np.empty((4, self.psi.size, pairs.LOOKED)), self.asked(depth), np.ones(6, dtype=bool)
-        pairs.look(self.robot.arm, self.plane, self.psi, lines, keep, asked, legs.TRAVEL, self.min_rate, out)
+        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, legs.TRAVEL, self.min_rate, out)
         return out
 
     def _starts(self, depth: float, found: Array) -> list[_Start]:
@@ -245,7 +242,7 @@ class _Search:
 
     def _deepened(self, start: _Start, beaten: float) -> list[_End]:
         """The deepest legs from a start on the branches of its posture; none where they are no deeper than `beaten`."""
-        sense = sense_at(self.robot.arm, self.plane, start.posture, float(start.legs.psi[0, 0]))
+        sense = sense_at(self.arm, self.plane, start.posture, float(start.legs.psi[0, 0]))
         if sense is None:
             return []
         # limits seldom bind: what is deepest without them is often within them, and nothing is deeper
@@ -271,11 +268,11 @@ class _Search:
         return ends
 
     def _go(
-        self, branch: int, sense: Array, rules: Rules, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
+        self, branch: int, sense: Array, rules: Constraints, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
         enough: float = ENOUGH, weighed: bool = False,
     ) -> tuple[Legs, float]:  # fmt: skip
         return bettered(
-            self.robot.arm, self.plane, branch, sense, rules, legs, goal,
+            self.arm, self.plane, branch, sense, rules, legs, goal,
             looks=looks, steps=steps, enough=enough, weighed=weighed,
         )  # fmt: skip
 
@@ -288,8 +285,7 @@ class _Search:
                 room = _shortened(deepest, 1 - kept_back)
                 room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
                 profile = motion_of(room, periodic=self.psi_bound is None)
-                hole = replace(self.hole, depth=room.depth)
-                score = evaluate(self.robot, self.tool, hole, profile, end.branch).score
+                score = evaluated(self.drilling.deep(room.depth), profile, end.branch).score
                 if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
                     return Deepest(room.depth, profile, end.branch)
         return None

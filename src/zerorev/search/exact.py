@@ -16,10 +16,8 @@ from itertools import combinations
 
 import numpy as np
 
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.search.problem import Mask, Problem
 from zerorev.search.rank import SAME_COST, Candidate
 from zerorev.search.survey import settled, survey, surveyed
@@ -30,22 +28,18 @@ __all__ = ["can_run", "search", "without_reversal"]
 ALL = np.ones(6, dtype=bool)
 
 
-def search(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, known: Sequence[Candidate] = ()
-) -> Candidate | None:
+def search(drilling: Drilling, settings: Settings, known: Sequence[Candidate] = ()) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the objective.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled; its `branch`, if any, is the only one searched; its stand-off counts from its target.
+        drilling: what is drilled; its `branch`, if any, is the only one searched; stand-offs count from its target.
         settings: threshold, bound on the spin, objective, weights of the joints.
         known: motions of this hole that were found otherwise; the answer is no worse than any of them.
 
     Returns:
         the motion, or None where no branch can run any.
     """
-    problem = Problem(robot, tool, hole, settings)
+    problem = Problem(drilling, settings)
     best = problem.order.best([without_reversal(problem), *known])
     if best is not None and best.reversals == 0:
         return best
@@ -71,9 +65,9 @@ def without_reversal(problem: Problem) -> Candidate | None:
     return Valleys(problem, problem.branches).best_motion(ALL)
 
 
-def can_run(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> bool:
+def can_run(drilling: Drilling, settings: Settings) -> bool:
     """Whether any branch and spin can run the hole at all, whatever reverses; as far as a grid can tell."""
-    return bool(np.isfinite(survey(Problem(robot, tool, hole, settings))).any())
+    return bool(np.isfinite(survey(Problem(drilling, settings))).any())
 
 
 def sets_to_keep(problem: Problem) -> Iterator[Mask]:

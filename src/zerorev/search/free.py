@@ -15,16 +15,13 @@ import numpy as np
 from zerorev.kernels import free as kernels
 from zerorev.kernels import legs, segments, tube
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import twist_plane
+from zerorev.motion.drilling import Drilling
 from zerorev.search.line import climb, edge, golden
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Goal, Rules, bettered, legs_through, motion_of
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
-from zerorev.search.viable import Grain, Held
+from zerorev.search.segments import Goal, bettered, legs_through, motion_of
+from zerorev.search.straight import LEAST_RATE, constraints, target_spins
+from zerorev.search.viable import ROWS_SLACK, Grain
 
 __all__ = ["SEGMENTS", "search_free"]
 
@@ -32,7 +29,6 @@ GRID = 120  # spins at the target in one turn
 WORTH = 0.9  # of the best of the grid: what is less deep is not closed in on
 PEAKS = 4  # closed in on, at most
 CLOSING_STEPS, LAST_STEPS = 12, 8
-LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the straight lines by which rows are joined
 SEGMENTS = (1, 2, 4, 8, 16)  # of a leg
 ROWS = 48  # of a tube that a motion is taken out of, at least
 GUARD = float(np.deg2rad(0.2))  # [rad/m] 0.0002 deg/mm aimed at beyond the threshold
@@ -40,25 +36,23 @@ MORE = 0.01  # by which more segments have to be better
 GUARDS = tuple(np.deg2rad([0.0, 1.0, 4.0]).tolist())  # [rad/m] up to 0.004 deg/mm for what lies between the points
 
 
-def search_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
+def search_free(drilling: Drilling, settings: Settings) -> Candidate | None:
     """The best motion of zero reversals on free legs at the depth of the hole.
 
     Where the motion threshold cannot be kept, it is the one of greatest margin.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled; its `branch`, if any, is the only one searched.
+        drilling: robot, tool and hole; its `branch`, if any, is the only one searched.
         settings: `min_rate`, at every point by either rule; `max_twist`; `psi_bound`; `objective`.
 
     Returns:
         the motion, or None where there is none.
     """
-    problem = _Problem(robot, tool, hole, settings)
-    found = problem.best(hole.depth)
+    depth = drilling.hole.depth
+    found = _FreeLegs(drilling, settings).best(depth)
     if found is None and settings.min_rate > LEAST_RATE:
-        found = _Problem(robot, tool, hole, replace(settings, min_rate=0.0, objective="margin")).best(hole.depth)
-    return None if found is None else Order(robot, tool, hole, settings).candidate(found.profile, found.branch)
+        found = _FreeLegs(drilling, replace(settings, min_rate=0.0, objective="margin")).best(depth)
+    return None if found is None else Order(drilling, settings).candidate(found.profile, found.branch)
 
 
 class _Place(NamedTuple):
@@ -74,25 +68,18 @@ def _grain(reach: float, fineness: float, finest: float) -> Grain:
     return Grain(reach / 200 / fineness, 0.4 / fineness, 0.2 / fineness, finest * reach)
 
 
-class _Problem:
+class _FreeLegs:
     """One hole, and the tubes out of its target."""
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> None:
-        self.robot, self.tool, self.hole, self.settings = robot, tool, hole, settings
-        self.arm, self.plane = robot.arm, twist_plane(robot, tool, hole)
-        self.branches = np.array([hole.branch in (None, branch) for branch in range(8)])
-        self.reach = float(robot.arm.c2 + np.hypot(robot.arm.a2, robot.arm.c3))
+    def __init__(self, drilling: Drilling, settings: Settings) -> None:
+        self.drilling, self.settings = drilling, settings
+        robot, self.plane = drilling.robot, drilling.plane
+        self.arm = robot.arm
+        self.branches = np.array([drilling.hole.branch in (None, branch) for branch in range(8)])
+        self.reach = robot.reach
         self.coarse = _grain(self.reach, 1, 1e-3)
         self.fine = _grain(self.reach, 3, 1e-6)
-        limits = robot.limits
-        self.held = Held(
-            limits.lower + LIMIT_SLACK,
-            limits.upper - LIMIT_SLACK,
-            max(settings.min_rate, LEAST_RATE),
-            settings.psi_bound or 0.0,
-            settings.max_twist,
-            LONGEST_TWIST,
-        )
+        self.held = constraints(robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist)
         self.longest = 2 * self.reach
         self.periodic = settings.psi_bound is None
         self.psi = target_spins(settings.psi_bound, GRID)
@@ -177,9 +164,7 @@ class _Problem:
         better = legs_through(tubes, narrowed, count)
         held, sense = self.held, self.sense.copy()
         for guard in GUARDS:
-            rules = Rules(
-                held.lower, held.upper, held.min_rate + guard + GUARD, held.steepest, held.psi_bound, held.longest_twist
-            )
+            rules = held._replace(min_rate=held.min_rate + guard + GUARD)
             better, lack = bettered(self.arm, self.plane, branch, sense, rules, better, goal)
             if lack > GUARD:
                 return None
@@ -201,7 +186,7 @@ class _Problem:
 
     def order(self, depth: float) -> Order:
         """Which motion of a depth is better: by the objective alone, which free legs are made for."""
-        return Order(self.robot, self.tool, replace(self.hole, depth=depth), replace(self.settings, weights=()))
+        return Order(self.drilling.deep(depth), replace(self.settings, weights=()))
 
     def best(self, depth: float) -> Candidate | None:
         """The best motion of a depth, by the objective."""

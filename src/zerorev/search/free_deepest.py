@@ -20,22 +20,19 @@ import numpy as np
 
 from zerorev.kernels import polyline as kernels
 from zerorev.kernels.arm import angles_along
+from zerorev.kernels.layout import Constraints
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.evaluation import evaluate
-from zerorev.motion.kinematics import twist_plane
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.search.segments import Legs, breakpoints_of, motion_of
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST
-from zerorev.search.viable import MOST_ROWS, ROWS, Family, Grain, Held, Pair, Viable
+from zerorev.search.straight import constraints
+from zerorev.search.viable import MOST_ROWS, ROWS, ROWS_SLACK, Family, Grain, Pair, Viable
 
 __all__ = ["CLOSEST", "SEGMENTS", "Effort", "deepest_free"]
 
 SEGMENTS = 64  # of a leg
-LIMIT_SLACK = 1e-5  # [rad] kept to the limits, against the straight lines by which rows are joined
 KEPT_BACK = (0.001, 0.003, 0.01)  # of the deepest, so that legs keep away from the ends of the viable sets
 CLOSE = 2e-3  # relative: to which the depth is located
 FIRST, SHALLOWEST = 0.97, 0.1  # of the depth of all curves: where the search along the depth begins, and ends
@@ -72,33 +69,29 @@ USUAL = Effort(ROWS, 4 * ROWS, SEGMENTS, tuple(np.deg2rad([0.05, 0.2, 1.0, 4.0])
 CLOSEST = Effort(MOST_ROWS, 0, 8 * SEGMENTS, tuple(np.deg2rad([0.02, 0.2, 1.0, 4.0]).tolist()))
 
 
-def deepest_free(robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort = USUAL) -> Deepest:
+def deepest_free(drilling: Drilling, settings: Settings, effort: Effort = USUAL) -> Deepest:
     """The deepest stroke with zero reversals on free legs, and a motion that reaches it.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin; its `branch`, if any, is the only one searched; its depth
-            does not matter.
+        drilling: target, direction and reference of the spin; its `branch`, if any, is the only one searched; its
+            depth does not matter.
         settings: `min_rate`, kept by every joint at every point; `max_twist`; `psi_bound`.
         effort: how closely legs are searched.
 
     Returns:
         depth [m], profile and branch; 0, None, None where no stroke has zero reversals.
     """
-    best, short = _deepest(robot, tool, hole, settings, effort, (0.0, None, None))
+    best, short = _deepest(drilling, settings, effort, (0.0, None, None))
     if short and effort.finer:
-        best, _ = _deepest(robot, tool, hole, settings, effort._replace(rows=effort.finer), best)
+        best, _ = _deepest(drilling, settings, effort._replace(rows=effort.finer), best)
     return best
 
 
-def _deepest(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort, best: Deepest
-) -> tuple[Deepest, bool]:
+def _deepest(drilling: Drilling, settings: Settings, effort: Effort, best: Deepest) -> tuple[Deepest, bool]:
     """The deepest stroke with the bound on the twist rate or a lesser one; and whether one is far short of its sets."""
     short = False
-    for steepest in (settings.max_twist, *_gentler(settings.max_twist, robot.reach)):
-        search = _Search(robot, tool, hole, replace(settings, max_twist=steepest), effort)
+    for steepest in (settings.max_twist, *_gentler(settings.max_twist, drilling.robot.reach)):
+        search = _Search(drilling, replace(settings, max_twist=steepest), effort)
         pairs = search.viable.pairs(best[0])
         best = max(best, search.best(pairs, best[0]), key=lambda deepest: deepest[0])
         short = short or bool(pairs and best[0] < SHORT * pairs[0].depth)
@@ -129,19 +122,12 @@ class _Curves(NamedTuple):
 class _Search:
     """One hole, and the deepest legs of straight segments out of its target."""
 
-    def __init__(self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, effort: Effort) -> None:
-        self.robot, self.tool, self.hole, self.settings, self.effort = robot, tool, hole, settings, effort
-        limits = robot.limits
-        self.held = Held(
-            limits.lower + LIMIT_SLACK,
-            limits.upper - LIMIT_SLACK,
-            max(settings.min_rate, LEAST_RATE),
-            settings.psi_bound or 0.0,
-            settings.max_twist,
-            LONGEST_TWIST,
-        )
-        branches = np.array([hole.branch in (None, branch) for branch in range(8)])
-        self.viable = Viable(robot.arm, twist_plane(robot, tool, hole), self.held, branches, robot.reach, effort.rows)
+    def __init__(self, drilling: Drilling, settings: Settings, effort: Effort) -> None:
+        self.drilling, self.settings, self.effort = drilling, settings, effort
+        robot = drilling.robot
+        self.held = constraints(robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist)
+        branches = np.array([drilling.hole.branch in (None, branch) for branch in range(8)])
+        self.viable = Viable(robot.arm, drilling.plane, self.held, branches, robot.reach, effort.rows)
         self.beyond: Legs | None = None  # what passed a limit last
         self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.LOOKS))
 
@@ -232,9 +218,11 @@ class _Search:
         """
         joints = np.empty((2, self.effort.segments + 1, 6))
         for k in range(2):
-            angles_along(self.robot.arm, self.viable.plane, legs.standoff[k], legs.psi[k], pair.branch, joints[k])
+            angles_along(
+                self.drilling.robot.arm, self.viable.plane, legs.standoff[k], legs.psi[k], pair.branch, joints[k]
+            )
         joints = np.unwrap(np.concatenate([joints[0, ::-1], joints[1, 1:]]), axis=0)
-        limits = self.robot.limits
+        limits = self.drilling.robot.limits
         middle = 0.5 * (joints.min(axis=0) + joints.max(axis=0))
         turns = 2 * np.pi * np.rint((0.5 * (limits.lower + limits.upper) - middle) / (2 * np.pi))
         at_target = self.viable.room[-1]
@@ -266,7 +254,7 @@ class _Search:
         """Whether curves get to a depth; the viable sets are left as made."""
         return self.viable.depth(pair.family, pair.branch, True, grain, depth, depth) > 0
 
-    def closed_in(self, pair: Pair, guarded: Held, grain: Grain, part: Array, depth: float) -> float:
+    def closed_in(self, pair: Pair, guarded: Constraints, grain: Grain, part: Array, depth: float) -> float:
         """The greatest depth to which segments are found [m]."""
         low, high, trial = SHALLOWEST * depth, depth, FIRST * depth
         while high - low > CLOSE * depth:
@@ -277,7 +265,7 @@ class _Search:
             trial = 0.5 * (low + high)
         return low
 
-    def width(self, pair: Pair, guarded: Held, grain: Grain, part: Array, depth: float) -> tuple[float, Array]:
+    def width(self, pair: Pair, guarded: Constraints, grain: Grain, part: Array, depth: float) -> tuple[float, Array]:
         """See `kernels.polyline.pair_width`; its result, and the viable spins at the breakpoints."""
         sets, spins = self.viable, np.empty((*part.shape, 2))
         wide = kernels.pair_width(
@@ -287,7 +275,7 @@ class _Search:
         )  # fmt: skip
         return float(wide), spins
 
-    def legs(self, pair: Pair, guarded: Held, grain: Grain, part: Array, depth: float) -> Legs | None:
+    def legs(self, pair: Pair, guarded: Constraints, grain: Grain, part: Array, depth: float) -> Legs | None:
         """Two legs of a depth, through the middle of what is viable."""
         wide, spins = self.width(pair, guarded, grain, part, depth)
         if wide < 0:
@@ -305,8 +293,7 @@ class _Search:
     def accepted(self, pair: Pair, legs: Legs) -> Profile | None:
         """The motion of two legs, if it has no reversal and keeps the threshold."""
         profile = motion_of(legs, periodic=self.settings.psi_bound is None)
-        hole = replace(self.hole, depth=legs.depth, profile=None)
-        seen = evaluate(self.robot, self.tool, hole, profile, pair.branch, self.settings)
+        seen = evaluated(self.drilling.deep(legs.depth), profile, pair.branch, self.settings)
         self.beyond = legs if any(finding.kind == "limit" for finding in seen.findings) else None
         score = seen.score
         good = score is not None and score.reversals == 0 and score.min_rate.min() >= self.settings.min_rate

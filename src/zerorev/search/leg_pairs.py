@@ -16,16 +16,16 @@ import numpy.typing as npt
 
 from zerorev.kernels.arm import flip_sign
 from zerorev.kernels.field import rates as rate_fields
+from zerorev.kernels.layout import TwistPlane
 from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Measures
-from zerorev.model.robot import JointLimits, Robot
-from zerorev.model.tool import Tool
+from zerorev.model.robot import JointLimits
 from zerorev.motion.criteria import compliance, manipulability, objective_of
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import JUMP, turns_within
-from zerorev.motion.kinematics import TwistPlane, inverse, jacobian, tcp_pose, twist_plane
+from zerorev.motion.kinematics import jacobian
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
@@ -97,21 +97,17 @@ class LegPairs:
     """One hole, and what is asked of the legs out of its target.
 
     Attributes:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         settings: motion threshold, bound on the spin, turns, weights.
     """
 
-    robot: Robot
-    tool: Tool
-    hole: Hole
+    drilling: Drilling
     settings: Settings
 
     @cached_property
     def plane(self) -> TwistPlane:
         """The hole's twist plane."""
-        return twist_plane(self.robot, self.tool, self.hole)
+        return self.drilling.plane
 
     def rates(self, branch: int, psi_t: Array, slope: Array, nodes: int) -> Array:
         """Outward rates [rad/m] along legs, shape (6, n, nodes); NaN out of reach.
@@ -122,12 +118,12 @@ class LegPairs:
             slope: twist rates [rad/m], shape (n,).
             nodes: points on a leg.
         """
-        standoff = np.tile(np.linspace(0.0, self.hole.depth, nodes), (psi_t.size, 1))
+        standoff = np.tile(np.linspace(0.0, self.drilling.hole.depth, nodes), (psi_t.size, 1))
         psi = psi_t[:, None] + slope[:, None] * standoff
         theta_s, theta_psi = np.empty((2, 6, psi.size))
-        rate_fields(self.robot.arm, self.plane, branch // 2, standoff.ravel(), psi.ravel(), theta_s, theta_psi)
+        rate_fields(self.drilling.robot.arm, self.plane, branch // 2, standoff.ravel(), psi.ravel(), theta_s, theta_psi)
         rates = theta_s.reshape(6, *psi.shape) + slope[:, None] * theta_psi.reshape(6, *psi.shape)
-        rates[4] *= flip_sign(self.robot.arm, branch)
+        rates[4] *= flip_sign(self.drilling.robot.arm, branch)
         return rates
 
     def judged(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> tuple[Array, Array]:
@@ -140,7 +136,7 @@ class LegPairs:
             least: motion threshold [rad/m].
             nodes: points on a leg.
         """
-        psi_t, depth = sides.psi_t[row], self.hole.depth
+        psi_t, depth = sides.psi_t[row], self.drilling.hole.depth
         rates = self.rates(sides.branch, psi_t, slope, nodes) * sides.sense[row].T[..., None]
         slowest, mean = _least(rates), _mean(rates)
         spare = slowest - LEAST_RATE
@@ -202,17 +198,18 @@ class LegPairs:
         order = np.argsort(row, kind="stable")
         row, slope = row[order], slope[order]
         margin = self.judged(sides, row, slope, least, nodes)[1]
-        standoff = np.linspace(0.0, self.hole.depth, NODES)
-        poses = tcp_pose(self.hole, standoff, sides.psi_t[row, None] + slope[:, None] * standoff)
-        joints = inverse(self.robot, poses @ np.linalg.inv(self.tool.T_flange_tcp))[..., sides.branch, :]
+        standoff = np.linspace(0.0, self.drilling.hole.depth, NODES)
+        joints = self.drilling.angles(standoff, sides.psi_t[row, None] + slope[:, None] * standoff)[
+            ..., sides.branch, :
+        ]
         joints = np.unwrap(joints, axis=1)
         steps = np.abs(np.diff(joints, axis=1))
         axial = lateral = np.full(row.shape, np.nan)
         if {"compliance_axial", "compliance_lateral"} & set(dict(self.settings.weights)):
-            J = jacobian(self.robot, self.tool, joints)
-            give = compliance(J, self.settings.joint_stiffness, self.hole.direction)
+            J = jacobian(self.drilling.robot, self.drilling.tool, joints)
+            give = compliance(J, self.settings.joint_stiffness, self.drilling.hole.direction)
             axial, lateral = (each.max(axis=1) for each in give)
-        dexterity = manipulability(self.robot, joints).min(axis=1)
+        dexterity = manipulability(self.drilling.robot, joints).min(axis=1)
         legs = Legs(row, slope, margin, steps.sum(axis=(1, 2)), joints.min(axis=1), joints.max(axis=1),
                      axial, lateral, dexterity)  # fmt: skip
         return legs.of(steps.max(axis=(1, 2)) < JUMP)
@@ -221,14 +218,14 @@ class LegPairs:
         """What all pairs of legs out of one spin cost, shape (n, m); inf beyond the limits."""
         low = np.minimum(legs.low[:, None], other.low)
         high = np.maximum(legs.high[:, None], other.high)
-        limits = self.robot.limits
+        limits = self.drilling.robot.limits
         turns, fits = turns_within(low, high, self.held(LIMIT_SLACK), self.settings.near_joints)
         distance = np.minimum(low + turns - limits.lower, limits.upper - high - turns)
         gentler = np.minimum(np.abs(legs.slope[:, None]), np.abs(other.slope))  # the plunge, see `straight_motion`
         measures = Measures(
             travel=np.add.outer(legs.travel, other.travel),
             margin=np.minimum.outer(legs.margin, other.margin),
-            plunge_rotation=gentler * self.hole.depth,
+            plunge_rotation=gentler * self.drilling.hole.depth,
             tool_speed_change=gentler * self.settings.feed_plunge,
             limit_distance=(2 * distance / (limits.upper - limits.lower)).min(axis=-1),
             compliance_axial=np.maximum.outer(legs.axial, other.axial),
@@ -253,7 +250,7 @@ class LegPairs:
 
     def held(self, slack: float) -> JointLimits:
         """The limits with a little kept to them [rad]."""
-        limits = self.robot.limits
+        limits = self.drilling.robot.limits
         return JointLimits(limits.lower + slack, limits.upper - slack, limits.speed)
 
 

@@ -14,20 +14,18 @@ from functools import cached_property
 
 import numpy as np
 
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Optimality
+from zerorev.model.plan import Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.proof_tree import ProofTree
 from zerorev.model.resized import resized
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.program.lead_in import find_lead_in
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
 from zerorev.search.cut_short import cut_short, descended, legs_swapped, steadied
-from zerorev.search.deepest import WORTH_RAISING, Deepest, deepened, deepest_stroke
+from zerorev.search.deepest import WORTH_RAISING, Deepest, deepened, deepest_of
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
 from zerorev.search.problem import Problem
@@ -60,79 +58,75 @@ class Optimum:
     optimality: Optimality | None = None
 
 
-def optimum(robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None) -> Optimum:
+def optimum(drilling: Drilling, settings: Settings, log: list[ProofTree] | None = None) -> Optimum:
     """The best motion of a hole, and its deepest stroke; stand-offs are counted from the hole's own target.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what to drill; its `branch`, if any, is the only one searched; a given motion is left aside.
+        drilling: what to drill; its `branch`, if any, is the only one searched; a given motion is left aside.
         settings: how; with `weights` their sum decides, else the objective.
         log: out, the trees of the proofs, for the hole down to the programmed corner; or None.
     """
-    pool = _Pool(robot, tool, hole, settings, log)
+    pool = _Pool(drilling, settings, log)
     best = pool.best()
     pool.settle(best)
-    if best is not None and best.reversals and pool.deepest.depth >= pool.hole.depth:
+    if best is not None and best.reversals and pool.deepest.depth >= pool.drilling.hole.depth:
         best = pool.best()  # what the proof of the depth has found can be cut short
     best, optimality = pool.proven(best)
     return Optimum(pool.from_the_target(best), pool.as_drilled(pool.raised(best)), optimality)
 
 
-def best_motion(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> Candidate | None:
+def best_motion(drilling: Drilling, settings: Settings) -> Candidate | None:
     """The best motion of `optimum` alone."""
-    pool = _Pool(robot, tool, hole, settings)
+    pool = _Pool(drilling, settings)
     return pool.from_the_target(pool.best())
 
 
-def deepest_as_drilled(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None
-) -> Deepest:
+def deepest_as_drilled(drilling: Drilling, settings: Settings, log: list[ProofTree] | None = None) -> Deepest:
     """The deepest stroke of `optimum` alone.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: where to drill; where its depth, searched for or with the motion that it gives, is deeper than the deepest
-            stroke found otherwise and has no reversal, the stroke is found from there.
+        drilling: where to drill; where its depth, searched for or with the motion that it gives, is deeper than the
+            deepest stroke found otherwise and has no reversal, the stroke is found from there.
         settings: as for `optimum`.
         log: likewise.
     """
-    pool = _Pool(robot, tool, hole, settings, log)
+    pool = _Pool(drilling, settings, log)
     best = None
-    if pool.deepest.depth < pool.hole.depth:
-        found = [without_reversal(Problem(pool.robot, pool.tool, pool.hole, pool.settings)), pool.free, *pool.given()]
+    if pool.deepest.depth < pool.drilling.hole.depth:
+        found = [
+            without_reversal(Problem(pool.drilling, pool.settings)),
+            pool.free,
+            *pool.given(),
+        ]
         best = pool.order.best(one for one in found if one is not None and pool.allows(one))
     pool.settle(best)
     return pool.as_drilled(pool.deepest)
 
 
-def alternatives(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> list[Candidate]:
+def alternatives(drilling: Drilling, settings: Settings) -> list[Candidate]:
     """Other good motions of a hole, best first: with more margin, and on every branch alone.
 
     They are for a hole of which the best motion does not pass the check: next to a singularity, or where a joint that
     hardly moves reverses in the blend of the corner.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what to drill.
+        drilling: what to drill.
         settings: by which they are ranked.
     """
-    order = Order(robot, tool, hole, settings)
+    order = Order(drilling, settings)
     bolder = [settings.min_rate * share + LEAST_RATE * times for share, times in MORE_MARGIN]
     asked = [replace(settings, min_rate=rate) for rate in bolder]
     asked.append(replace(settings, objective="margin", weights=()))
-    found = [best_motion(robot, tool, hole, other) for other in asked]
-    branches = range(8) if hole.branch is None else ()
-    found += [best_motion(robot, tool, replace(hole, branch=branch), settings) for branch in branches]
+    found = [best_motion(drilling, other) for other in asked]
+    branches = range(8) if drilling.hole.branch is None else ()
+    found += [best_motion(drilling.on_branch(branch), settings) for branch in branches]
     judged = (order.candidate(one.profile, one.branch) for one in found if one is not None)
     return sorted((one for one in judged if one is not None), key=order.rank)
 
 
-def too_short(robot: Robot, hole: Hole) -> bool:
+def too_short(drilling: Drilling) -> bool:
     """Whether a stroke is too short for a motion whose figures mean anything."""
-    return hole.depth < LEAST_STROKE * robot.reach
+    return drilling.hole.depth < LEAST_STROKE * drilling.robot.reach
 
 
 class _Pool:
@@ -141,24 +135,24 @@ class _Pool:
     The tolerances of the searches are made for that size. Weighted criteria are not: they count in units of their own.
     """
 
-    def __init__(
-        self, robot: Robot, tool: Tool, hole: Hole, settings: Settings, log: list[ProofTree] | None = None
-    ) -> None:
+    def __init__(self, drilling: Drilling, settings: Settings, log: list[ProofTree] | None = None) -> None:
         self.log = log
-        self.size = 1.0 if settings.weights else robot.size
-        self.real = Order(robot, tool, replace(hole, profile=None), settings)
+        self.size = 1.0 if settings.weights else drilling.robot.size
+        self.real = Order(drilling.without_motion(), settings)
         if self.size != 1:
-            robot, tool, hole, settings = resized(robot, tool, hole, settings, 1 / self.size)
-        self.robot, self.tool, self.settings, self.profile = robot, tool, settings, hole.profile
-        corner = settings.corner
-        down = replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner, profile=None)
-        self.hole = down if corner or self.size != 1 else self.real.hole
-        self.order = Order(robot, tool, self.hole, settings)
+            robot, tool, hole, settings = resized(drilling.robot, drilling.tool, drilling.hole, settings, 1 / self.size)
+            drilling = Drilling(robot, tool, hole)
+        self.settings, self.profile = settings, drilling.hole.profile
+        if settings.corner:
+            self.drilling = drilling.nearer(settings.corner)
+        else:
+            self.drilling = self.real.drilling if self.size == 1 else drilling.without_motion()
+        self.order = Order(self.drilling, settings)
 
     @cached_property
     def deepest(self) -> Deepest:
         """The deepest stroke, whatever the depth of the hole."""
-        found = deepest_stroke(self.robot, self.tool, self.hole, self.settings)
+        found = deepest_of(self.drilling, self.settings)
         return self.led_in(found) if self.settings.keep_lead_in else found
 
     @cached_property
@@ -166,18 +160,18 @@ class _Pool:
         """The best motion of free legs, where the settings ask for such."""
         if self.settings.legs == "straight":
             return None
-        return search_free(self.robot, self.tool, self.hole, self.settings)
+        return search_free(self.drilling, self.settings)
 
     def cut(self) -> Candidate | None:
         """The deepest motion cut short."""
-        found, depth = self.deepest, self.hole.depth
+        found, depth = self.deepest, self.drilling.hole.depth
         if found.profile is None or found.branch is None or depth > found.depth:
             return None
         return self.order.candidate(cut_short(found.profile, depth), found.branch)
 
     def stretched(self) -> Candidate | None:
         """The greatest margin near the deepest motion, made as deep as the hole."""
-        found, depth = self.deepest, self.hole.depth
+        found, depth = self.deepest, self.drilling.hole.depth
         if found.profile is None or found.branch is None or depth <= found.depth or found.profile.psi.size > 3:
             return None
         psi_t = float(found.profile.psi[found.profile.corner])
@@ -193,18 +187,18 @@ class _Pool:
         if kinked or steep or np.abs(profile.psi).max() > (settings.psi_bound or np.inf):
             return []
         down = Profile(profile.standoff - settings.corner, profile.psi)
-        branches = range(8) if self.hole.branch is None else (self.hole.branch,)
+        branches = range(8) if self.drilling.hole.branch is None else (self.drilling.hole.branch,)
         found = [self.order.candidate(down, branch) for branch in branches]
         return [one for one in found if one is not None]
 
     def best(self) -> Candidate | None:
         """The best of the pool."""
-        if too_short(self.robot, self.hole):
+        if too_short(self.drilling):
             return None
         cut, order = self.cut(), self.order
         known = [one for one in (cut, self.free) if one is not None]
         straight = search_weighted if self.settings.weights else search
-        best = order.best([straight(self.robot, self.tool, self.hole, self.settings, known), *known])
+        best = order.best([straight(self.drilling, self.settings, known), *known])
         if best is not None and best is cut:  # the search has overlooked its valley
             best = descended(order, best)
         if best is None or best.reversals or not best.keeps_threshold:
@@ -217,17 +211,16 @@ class _Pool:
         """Whether the whole lead-in of a motion runs without a reversal, where the settings ask for that."""
         if not self.settings.keep_lead_in:
             return True
-        hole = replace(self.hole, depth=motion.depth)
-        plan = HolePlan(hole, "planned", 0.0, motion.evaluation.motion)
+        assert motion.evaluation.motion is not None
         wanted = self.settings.lead_in
-        return find_lead_in(self.robot, self.tool, plan, wanted).length == wanted
+        return find_lead_in(self.drilling, motion.evaluation.motion, wanted).length == wanted
 
     def with_lead_in(self, best: Candidate) -> Iterator[Candidate]:
         """Motions of which the lead-in may run: the best one with its legs swapped, and those of a deeper hole."""
-        longer = replace(self.hole, depth=self.hole.depth + self.settings.lead_in)
-        deeper = _Pool(self.robot, self.tool, longer, replace(self.settings, keep_lead_in=False, deepen_corner=False))
+        longer = self.drilling.deep(self.drilling.hole.depth + self.settings.lead_in)
+        deeper = _Pool(longer, replace(self.settings, keep_lead_in=False, deepen_corner=False))
         whole = [deeper.best(), self.cut()]
-        inner = [cut_short(one.profile, self.hole.depth) for one in whole if one is not None]
+        inner = [cut_short(one.profile, self.drilling.hole.depth) for one in whole if one is not None]
         branches = [one.branch for one in whole if one is not None]
         for profile, branch in zip([best.profile, *inner], [best.branch, *branches], strict=True):
             for way in (profile, legs_swapped(profile)):
@@ -251,8 +244,7 @@ class _Pool:
         low = max(high - self.settings.lead_in, 0.0)
         for step in range(LEAD_IN_STEPS):
             depth = high if step == 0 else low if step == 1 and low > 0 else 0.5 * (low + high)
-            hole = replace(self.hole, depth=depth)
-            cut = Order(self.robot, self.tool, hole, self.settings).candidate(cut_short(whole, depth), branch)
+            cut = Order(self.drilling.deep(depth), self.settings).candidate(cut_short(whole, depth), branch)
             if cut is not None and self.allows(cut):
                 best, low = cut, depth
             else:
@@ -265,7 +257,7 @@ class _Pool:
         """The best of straight legs, improved where a proof finds that possible, and what is proven of it."""
         if self.settings.proof_boxes == 0 or self.settings.legs == "free":
             return best, None
-        problem = Problem(self.robot, self.tool, self.hole, self.settings)
+        problem = Problem(self.drilling, self.settings)
         trees = None if self.log is None else list[ProofTree]()
         proof = prove(problem, best, self.settings.proof_boxes, self.allows, trees)
         self.keep(trees)
@@ -276,7 +268,7 @@ class _Pool:
         boxes = self.settings.proof_boxes
         if boxes == 0 or self.settings.keep_lead_in:
             return deepest
-        problem = Problem(self.robot, self.tool, self.hole, self.settings)
+        problem = Problem(self.drilling, self.settings)
         if self.settings.legs == "free":
             return replace(deepest, at_most=bound_free_depth(problem, deepest.depth, boxes).at_most)
         while boxes > 0:
@@ -286,7 +278,7 @@ class _Pool:
             boxes -= bound.boxes
             if bound.deeper is None:
                 return replace(deepest, at_most=bound.at_most)
-            deepest = deepened(self.robot, self.tool, self.hole, self.settings, bound.deeper)
+            deepest = deepened(self.drilling, self.settings, bound.deeper)
         return deepest
 
     def keep(self, trees: list[ProofTree] | None) -> None:
@@ -310,14 +302,14 @@ class _Pool:
             return self.deepest
         if self.settings.keep_lead_in:
             return replace(self.deepest, depth=best.depth, profile=best.profile, branch=best.branch)
-        deeper = deepened(self.robot, self.tool, self.hole, self.settings, best)
+        deeper = deepened(self.drilling, self.settings, best)
         for _ in range(MOST_RAISES):
             # another valley may go on where this one ends
-            hole = replace(self.hole, depth=deeper.depth)
-            beyond = without_reversal(Problem(self.robot, self.tool, hole, self.settings))
+            there = self.drilling.deep(deeper.depth)
+            beyond = without_reversal(Problem(there, self.settings))
             if beyond is None or not self.keeps(beyond):
                 break
-            found = deepened(self.robot, self.tool, hole, self.settings, beyond)
+            found = deepened(there, self.settings, beyond)
             if found.depth <= deeper.depth * (1 + WORTH_RAISING):
                 break
             deeper = found

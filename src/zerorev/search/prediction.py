@@ -14,15 +14,16 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.polynomial import polyval
 
+from zerorev.kernels.layout import LONGEST_TWIST
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import JointLimits, Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.critical import UNMOVED, CriticalRates, bracket, critical
-from zerorev.motion.kinematics import inverse, joint_rates, tcp_pose
+from zerorev.model.robot import NIL_RATE, JointLimits, Robot
+from zerorev.motion.critical import CriticalRates, bracket, critical
+from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.search.line import golden
-from zerorev.search.straight import LEAST_RATE, LONGEST_TWIST, target_spins
+from zerorev.search.straight import LEAST_RATE, target_spins
 
 __all__ = [
     "Prediction",
@@ -64,55 +65,51 @@ class Prediction:
     deepest_at: CriticalRates | None
 
 
-def predict(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None, *, root: Root | None = None
-) -> Prediction:
+def predict(drilling: Drilling, settings: Settings | None = None, *, root: Root | None = None) -> Prediction:
     """Foretell the least twist of a hole at its depth, and its deepest stroke, without a search (docs/prediction.md).
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what to drill; its `branch`, if any, is the only one looked at.
+        drilling: robot, tool and hole: what to drill; its `branch`, if any, is the only one looked at.
         settings: whose `min_rate` every joint keeps at every point, and whose `psi_bound` holds the spin.
         root: up to where an expansion of a joint's motion is trusted; by default `earlier_root` for the deepest stroke
             and `second_order_root` for the twist.
     """
     settings = settings or Settings()
     deep, gentle = root or earlier_root, root or second_order_root
-    line = _target_line(robot, tool, hole, settings)
+    line = _target_line(drilling, settings)
     if line.psi.size == 0:
         return Prediction(None, np.inf, 0.0, None)
 
     depths = np.minimum(line.farthest(1, deep), line.farthest(-1, deep))
     best = int(np.argmax(depths))
-    at = critical(robot, tool, hole, int(line.branch[best]), float(line.psi[best]), settings.min_rate)
-    twists = (line.gentlest(1, hole.depth, gentle) - line.gentlest(-1, hole.depth, gentle)) * hole.depth
+    at = critical(drilling, int(line.branch[best]), float(line.psi[best]), settings.min_rate)
+    twists = (
+        line.gentlest(1, drilling.hole.depth, gentle) - line.gentlest(-1, drilling.hole.depth, gentle)
+    ) * drilling.hole.depth
     return Prediction(
-        cheapest=narrowest(robot, tool, hole, settings),
+        cheapest=narrowest(drilling, settings),
         least_twist=float(np.nanmin(twists, initial=np.inf)),
         deepest=float(depths[best]),
         deepest_at=at if depths[best] > 0 else None,
     )
 
 
-def narrowest(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> CriticalRates:
+def narrowest(drilling: Drilling, settings: Settings) -> CriticalRates:
     """The narrowest bracket of the target line; its width is not finite where the target is out of reach.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: where to drill; its `branch`, if any, is the only one looked at.
+        drilling: robot, tool and hole: where to drill; its `branch`, if any, is the only one looked at.
         settings: whose `min_rate` every joint keeps at the target, and whose `psi_bound` holds the spin.
     """
     spins = target_spins(settings.psi_bound, FINE_SPINS)
-    below, above = bracket(*joint_rates(robot, tool, hole, 0.0, spins), settings.min_rate)
+    below, above = bracket(*joint_rates(drilling, 0.0, spins), settings.min_rate)
     with np.errstate(invalid="ignore"):  # out of reach, where both are infinite
-        width = np.where(_within(robot, hole, _angles(robot, tool, hole, spins)), above - below, np.inf)
+        width = np.where(_within(drilling.robot, drilling.hole, _angles(drilling, spins)), above - below, np.inf)
     n, branch = np.unravel_index(np.nanargmin(width), width.shape)
     low, high = spins[max(int(n) - 1, 0)], spins[min(int(n) + 1, len(spins) - 1)]
 
     def at(psi: float) -> CriticalRates:
-        return critical(robot, tool, hole, int(branch), psi, settings.min_rate)
+        return critical(drilling, int(branch), psi, settings.min_rate)
 
     here, closer = at(float(spins[n])), at(golden(lambda psi: at(psi).width, low, high, CLOSING_STEPS))
     return closer if closer.width < here.width else here
@@ -176,7 +173,7 @@ class _TargetLine(NamedTuple):
         )
         angles, sense = self.angles[:, None, :], np.copysign(1.0, side * self.motion[0][1])[:, None, :]
         # a joint that stands still altogether does not reverse
-        moves = np.abs(rate) > UNMOVED
+        moves = np.abs(rate) > NIL_RATE
         stops = np.where(moves, root(sense * rate - self.min_rate, sense * bend, sense * curl), np.inf)
         limit = np.minimum(root(self.limits.upper - angles, -rate, -bend), root(angles - self.limits.lower, rate, bend))
         room = np.minimum(LONGEST_TWIST, self.psi_bound - self.psi[:, None] * np.sign(slopes))
@@ -209,16 +206,20 @@ class _TargetLine(NamedTuple):
         return good
 
 
-def _target_line(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> _TargetLine:
-    limits, min_rate = robot.limits, max(settings.min_rate, LEAST_RATE)
+def _target_line(drilling: Drilling, settings: Settings) -> _TargetLine:
+    limits, min_rate = drilling.robot.limits, max(settings.min_rate, LEAST_RATE)
     spins = target_spins(settings.psi_bound, SPINS)
-    angles = _angles(robot, tool, hole, spins)
+    angles = _angles(drilling, spins)
     # five points: the place itself, a step out and in, a step round and back
     steps = np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]]) * [STEP_ALONG, STEP_ROUND]
-    theta_s, theta_psi = joint_rates(robot, tool, hole, steps[:, :1], spins + steps[:, 1:])
+    theta_s, theta_psi = joint_rates(drilling, steps[:, :1], spins + steps[:, 1:])
     with np.errstate(invalid="ignore"):
         below, above = bracket(theta_s[0], theta_psi[0], min_rate)
-        use = _within(robot, hole, angles) & np.isfinite(above - below) & np.isfinite(theta_s).all(axis=(0, 3))
+        use = (
+            _within(drilling.robot, drilling.hole, angles)
+            & np.isfinite(above - below)
+            & np.isfinite(theta_s).all(axis=(0, 3))
+        )
     theta_s, theta_psi = theta_s[:, use], theta_psi[:, use]
     along, round_ = (slice(0, 3), STEP_ALONG), ([0, 3, 4], STEP_ROUND)
     (s_s, s_ss), (s_psi, s_psipsi) = (_derivatives(theta_s[points], step) for points, step in (along, round_))
@@ -233,10 +234,10 @@ def _target_line(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> _T
     return _TargetLine(spins[n], branch, angles[use], motion, below[use], above[use], limits, min_rate, bound)
 
 
-def _angles(robot: Robot, tool: Tool, hole: Hole, spins: Array) -> Array:
+def _angles(drilling: Drilling, spins: Array) -> Array:
     """Joints at the target [rad], turned to where they are farthest from the limits, shape (N, 8, 6)."""
-    angles = inverse(robot, tcp_pose(hole, 0.0, spins) @ np.linalg.inv(tool.T_flange_tcp))
-    middle = (robot.limits.lower + robot.limits.upper) / 2
+    angles = inverse(drilling.robot, tcp_pose(drilling.hole, 0.0, spins) @ np.linalg.inv(drilling.tool.T_flange_tcp))
+    middle = (drilling.robot.limits.lower + drilling.robot.limits.upper) / 2
     return angles + FULL_TURN * np.round((middle - angles) / FULL_TURN)
 
 

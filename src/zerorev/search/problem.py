@@ -4,41 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import legs
+from zerorev.kernels.layout import Constraints, TwistPlane
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import TwistPlane, twist_plane
+from zerorev.motion.drilling import Drilling
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
+from zerorev.search.straight import GRID, constraints, steepest_twist, straight_motion, target_spins
 
-__all__ = ["Asked", "Mask", "Problem"]
+__all__ = ["Mask", "Problem"]
 
 Mask = npt.NDArray[np.bool_]
-
-
-class Asked(NamedTuple):
-    """What a leg is held to; a NamedTuple, so that kernels take it whole. SI units."""
-
-    depth: float
-    min_rate: float
-    mean_rule: bool
-    turn_inside: bool
-    lower: Array
-    upper: Array
-    steepest: float
-    psi_bound: float  # 0: periodic
-
-    def unlimited(self) -> Asked:
-        """The same without joint limits."""
-        return self._replace(lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
 
 
 @dataclass(frozen=True)
@@ -46,26 +26,22 @@ class Problem:
     """One hole.
 
     Attributes:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled; its `branch`, if any, is the only one searched.
+        drilling: robot, tool and hole; its `branch`, if any, is the only one searched.
         settings: threshold, bound on the spin, objective, weights of the joints.
     """
 
-    robot: Robot
-    tool: Tool
-    hole: Hole
+    drilling: Drilling
     settings: Settings
 
     @cached_property
     def order(self) -> Order:
         """Which motion is better than another."""
-        return Order(self.robot, self.tool, self.hole, self.settings)
+        return Order(self.drilling, self.settings)
 
     @cached_property
     def plane(self) -> TwistPlane:
         """The hole's twist plane."""
-        return twist_plane(self.robot, self.tool, self.hole)
+        return self.drilling.plane
 
     @cached_property
     def psi(self) -> Array:
@@ -90,23 +66,21 @@ class Problem:
     @property
     def branches(self) -> list[int]:
         """Those that are searched, of 0..7."""
-        return list(range(8)) if self.hole.branch is None else [self.hole.branch]
+        return list(range(8)) if self.drilling.hole.branch is None else [self.drilling.hole.branch]
 
-    def asked(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Asked:
+    def asked(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Constraints:
         """What the legs are held to."""
-        limits = self.robot.limits
-        return Asked(
-            self.hole.depth,
-            max(min_rate, LEAST_RATE),
-            mean_rule,
-            turn_inside,
-            limits.lower + LIMIT_SLACK,
-            limits.upper - LIMIT_SLACK,
-            steepest_twist(self.settings, self.hole.depth),
-            self.settings.psi_bound or 0.0,
+        return constraints(
+            self.drilling.robot,
+            self.settings,
+            min_rate,
+            steepest=steepest_twist(self.settings, self.drilling.hole.depth),
+            depth=self.drilling.hole.depth,
+            mean_rule=mean_rule,
+            turn_inside=turn_inside,
         )
 
-    def objective(self, *, turn_inside: bool = False) -> tuple[Asked, int]:
+    def objective(self, *, turn_inside: bool = False) -> tuple[Constraints, int]:
         """What the settings ask of the legs, and what makes one better than another."""
         settings = self.settings
         mode = {
@@ -119,7 +93,9 @@ class Problem:
 
     def found(self, branch: int, psi_t: float, slopes: tuple[float, float]) -> Candidate | None:
         """The motion of two legs out of one spin at the target, evaluated; None where it cannot be run."""
-        return self.order.candidate(straight_motion(self.hole.depth, psi_t, slopes, periodic=self.periodic), branch)
+        return self.order.candidate(
+            straight_motion(self.drilling.hole.depth, psi_t, slopes, periodic=self.periodic), branch
+        )
 
     def cost_without(self, keep: Mask) -> float:
         """What it costs, at least, to leave out the joints that are not in a set."""

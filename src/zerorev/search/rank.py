@@ -12,14 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Score
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
 from zerorev.motion.criteria import measure, objective_of
-from zerorev.motion.evaluation import Evaluation, evaluate, meets_threshold, steady_rates
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import Evaluation, evaluated, meets_threshold, steady_rates
 
 __all__ = ["SAME_COST", "Candidate", "Order", "Rank"]
 
@@ -90,15 +88,11 @@ class Order:
     """Which motion of a hole is better.
 
     Attributes:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         settings: weights of the joints, motion threshold, and the objective or the weights of the criteria.
     """
 
-    robot: Robot
-    tool: Tool
-    hole: Hole
+    drilling: Drilling
     settings: Settings
 
     def candidate(self, profile: Profile, branch: int) -> Candidate | None:
@@ -108,7 +102,7 @@ class Order:
             profile: the spin along the path.
             branch: 0..7.
         """
-        return self.judged(profile, branch, evaluate(self.robot, self.tool, self.hole, profile, branch, self.settings))
+        return self.judged(profile, branch, evaluated(self.drilling, profile, branch, self.settings))
 
     def judged(self, profile: Profile, branch: int, evaluation: Evaluation) -> Candidate | None:
         """A motion that was evaluated already; None where it cannot be run."""
@@ -146,7 +140,7 @@ class Order:
 
     def _cost(self, candidate: Candidate) -> float:
         if self.settings.weights:
-            measures = measure(self.robot, self.tool, self.hole, candidate.evaluation, self.settings)
+            measures = measure(self.drilling, candidate.evaluation, self.settings)
             return objective_of(self.settings)(measures)
         match self.settings.objective:  # a single criterion orders motions as its own figure does
             case "travel":

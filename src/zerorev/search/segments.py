@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 
 from zerorev.kernels import segments as kernels
 from zerorev.kernels import slp
 from zerorev.kernels.arm import twist_field
+from zerorev.kernels.layout import Constraints, TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
-from zerorev.motion.kinematics import TwistPlane
-from zerorev.search.straight import LONGEST_TWIST
 
-__all__ = ["Goal", "Legs", "Rules", "bettered", "breakpoints_of", "legs_through", "motion_of", "sense_at"]
+__all__ = ["Goal", "Legs", "bettered", "breakpoints_of", "legs_through", "motion_of", "sense_at"]
 
 Goal = Literal["depth", "travel", "margin", "plunge_rotation"]
 GOALS: dict[Goal, int] = {
@@ -27,26 +26,6 @@ STEPS = 120
 ENOUGH = 1e-6  # relative: less is no gain
 EVENLY = 0.3  # of the breakpoints: as many for each length of the leg
 BENT = 400  # points at which it is asked how much a leg bends, at least
-
-
-class Rules(NamedTuple):
-    """What two legs are held to; a NamedTuple, so that kernels take it whole. SI units.
-
-    Attributes:
-        lower: limits of the joints [rad], shape (6,); infinite ones are not looked at.
-        upper: likewise.
-        min_rate: of any joint [rad/m].
-        steepest: twist rate [rad/m]; inf: `longest` counts instead.
-        psi_bound: spins within +- this [rad]; 0: periodic.
-        longest: twist of a leg [rad].
-    """
-
-    lower: Array
-    upper: Array
-    min_rate: float
-    steepest: float = np.inf
-    psi_bound: float = 0.0
-    longest: float = LONGEST_TWIST
 
 
 @dataclass(frozen=True)
@@ -104,7 +83,7 @@ def bettered(
     plane: TwistPlane,
     branch: int,
     sense: Array,
-    rules: Rules,
+    rules: Constraints,
     legs: Legs,
     goal: Goal,
     *,

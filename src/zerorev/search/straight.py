@@ -2,18 +2,43 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
+from zerorev.kernels.layout import LONGEST_TWIST, Constraints
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
 
-__all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "LONGEST_TWIST", "steepest_twist", "straight_motion", "target_spins"]
+__all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "constraints", "steepest_twist", "straight_motion", "target_spins"]
 
-LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
 GRID = 240  # spins at the target in one turn
 LIMIT_SLACK = 1e-6  # [rad] kept to the limits, so that rounding passes none
 LEAST_RATE = float(np.deg2rad(1e-5))  # [rad/m] 1e-8 deg/mm: a joint that must not stop keeps at least so much
+
+
+def constraints(
+    robot: Robot, settings: Settings, min_rate: float, *, slack: float = LIMIT_SLACK, **more: Any
+) -> Constraints:
+    """What legs have to keep.
+
+    Args:
+        robot: whose joint limits they keep.
+        settings: for the bound on the spin.
+        min_rate: of every joint [rad/m]; the least rate, at least.
+        slack: kept to the limits besides [rad].
+        more: as `Constraints` has it.
+    """
+    limits = robot.limits
+    return Constraints(
+        lower=limits.lower + slack,
+        upper=limits.upper - slack,
+        min_rate=max(min_rate, LEAST_RATE),
+        psi_bound=settings.psi_bound or 0.0,
+        **more,
+    )
 
 
 def steepest_twist(settings: Settings, depth: float) -> float:

@@ -48,7 +48,7 @@ def survey(problem: Problem) -> Array:
     out = np.empty((8, problem.psi.size, 5))
     asked, mode = problem.objective()
     branches = np.isin(np.arange(8), problem.branches)
-    arm, plane, psi = problem.robot.arm, problem.plane, problem.psi
+    arm, plane, psi = problem.drilling.robot.arm, problem.plane, problem.psi
     fan = _fan(psi.size)
     fans.follow(arm, plane, psi, problem.asked(0.0), COARSE_NODES, branches, fan)
     fans.survey(arm, plane, psi, fan, problem.weights, asked, mode, branches, out)
@@ -114,7 +114,7 @@ def _searched(
 ) -> tuple[Candidate | None, Array]:
     """Where a compass search ends, and cost, lack and value there as the nodes see them."""
     (asked, mode), best, point = problem.objective(), np.empty(3), seed.copy()
-    search(problem.robot.arm, problem.plane, branch, point, step, problem.weights, asked, mode, nodes, best)
+    search(problem.drilling.robot.arm, problem.plane, branch, point, step, problem.weights, asked, mode, nodes, best)
     return problem.found(branch, point[0], (point[1], point[2])), best
 
 

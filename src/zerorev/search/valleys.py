@@ -16,10 +16,11 @@ import numpy as np
 
 from zerorev.kernels import legs, pairs
 from zerorev.kernels.field import ROOM
+from zerorev.kernels.layout import Constraints
 from zerorev.model._arrays import Array
 from zerorev.motion.evaluation import event_distance
 from zerorev.motion.joint_path import outward_rates
-from zerorev.search.problem import Asked, Mask, Problem
+from zerorev.search.problem import Mask, Problem
 from zerorev.search.rank import Candidate
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
@@ -66,7 +67,7 @@ class Valleys:
             branches: where to look; of all of them it is the best motion that is wanted.
         """
         self.problem = problem
-        self.arm, self.plane, self.psi = problem.robot.arm, problem.plane, problem.psi
+        self.arm, self.plane, self.psi = problem.drilling.robot.arm, problem.plane, problem.psi
         self.step, self.periodic = problem.step, problem.periodic
         self.branches = np.isin(np.arange(8), branches)
 
@@ -113,7 +114,7 @@ class Valleys:
         asked = self.problem.asked(0.0, turn_inside=True)
         return np.array([not (self._look(alone, asked, legs.TRAVEL)[1] > 0).any() for alone in np.eye(6, dtype=bool)])
 
-    def _look(self, keep: Mask, asked: Asked, mode: int) -> tuple[Array, Array, Array]:
+    def _look(self, keep: Mask, asked: Constraints, mode: int) -> tuple[Array, Array, Array]:
         """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
         out = np.empty((4, self.psi.size, pairs.LOOKED))
         lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
@@ -121,7 +122,7 @@ class Valleys:
         value, margin, guess = np.moveaxis(out[..., :3], -1, 0)
         return value, margin, guess
 
-    def _bottoms(self, keep: Mask, asked: Asked, mode: int) -> Iterator[_Pair]:
+    def _bottoms(self, keep: Mask, asked: Constraints, mode: int) -> Iterator[_Pair]:
         """Go down every valley of the coarse look that may hold the best pair; each pair betters those before it."""
         value, margin, guess = self._look(keep, asked, mode)
         # between the grid's spins, too, the margin may just be enough
@@ -180,14 +181,14 @@ class Valleys:
         variation = max((abs(row[n] - value) for value in known), default=np.inf)
         return bool(row[n] + 2 * variation >= wanted)
 
-    def _descend(self, keep: Mask, asked: Asked, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
+    def _descend(self, keep: Mask, asked: Constraints, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
         """The bottom of the valley around one spin of the grid."""
         return self._followed(keep, asked, mode, posture, self.psi[n], self.step, NODES, DESCENT_STEPS, bound)
 
     def _followed(
         self,
         keep: Mask,
-        asked: Asked,
+        asked: Constraints,
         mode: int,
         posture: int,
         spin: float,
@@ -204,7 +205,7 @@ class Valleys:
             spin = pair.psi_t
         return pair
 
-    def _shoulders(self, keep: Mask, asked: Asked, mode: int, value: Array, posture: int, n: int) -> list[int]:
+    def _shoulders(self, keep: Mask, asked: Constraints, mode: int, value: Array, posture: int, n: int) -> list[int]:
         """The nearest spins of the grid to either side of one, within its valley, at which some pair will do."""
         found, row, work = [], np.empty(pairs.COLUMNS), np.empty(ROOM)
         for side in (-1, 1):
@@ -224,7 +225,7 @@ class Valleys:
     def _bottom(
         self,
         keep: Mask,
-        asked: Asked,
+        asked: Constraints,
         mode: int,
         posture: int,
         low: float,
@@ -243,7 +244,7 @@ class Valleys:
         )  # fmt: skip
         return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 
-    def _polished(self, keep: Mask, asked: Asked, mode: int, pair: _Pair) -> Candidate | None:
+    def _polished(self, keep: Mask, asked: Constraints, mode: int, pair: _Pair) -> Candidate | None:
         """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
         goal = asked.min_rate
         # nobody asked for the floor: half of it is enough
@@ -268,7 +269,7 @@ class Valleys:
         return found
 
     def _nearby(
-        self, keep: Mask, asked: Asked, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
+        self, keep: Mask, asked: Constraints, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
     ) -> _Pair | None:
         """The best pair around another, on fine legs, as close to it as some will do; `close` in steps of the grid."""
         for around in np.array(close) * self.step:
@@ -288,9 +289,7 @@ class Valleys:
                 # about the middle of the way back it is fastest
                 middle = np.mean([event_distance(found.profile, event) for event in turns], keepdims=True)
                 slope = found.profile.twist_rate[0 if turns[0].leg == "plunge" else 1]
-                rates = outward_rates(
-                    problem.robot, problem.tool, problem.hole, found.branch, *found.profile.at(middle), slope
-                )
+                rates = outward_rates(problem.drilling, found.branch, *found.profile.at(middle), slope)
                 least = min(least, -abs(float(rates[0, joint])))
         return least
 

@@ -22,13 +22,13 @@ import numpy.typing as npt
 
 from zerorev.kernels import viable as kernels
 from zerorev.kernels.field import rates
+from zerorev.kernels.layout import Constraints, TwistPlane
 from zerorev.kernels.reach import KEPT, workspaces
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
-from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.straight import target_spins
 
-__all__ = ["Family", "Grain", "Held", "Pair", "Tubes", "Viable"]
+__all__ = ["ROWS_SLACK", "Family", "Grain", "Pair", "Tubes", "Viable"]
 
 GRID = 240  # spins at the target in one turn
 MAX_ROWS = 512  # of a tube, which may get a little deeper
@@ -36,18 +36,8 @@ COARSE_ROWS = 60  # of the stretched arm
 ROWS, MOST_ROWS = 48, 384  # of the depth in question: usually, and at most for the tubes to have room
 CLOSE = 1e-3  # relative: to which a depth is closed in on
 NEARLY = 0.97  # of the deepest: what gets nearly as deep is kept, too
+ROWS_SLACK = 1e-5  # [rad] kept to the limits, against the straight lines by which rows are joined
 COARSE_SLACK = 1.02  # by how much coarse tubes may end too early
-
-
-class Held(NamedTuple):
-    """What a leg is held to; a NamedTuple, so that kernels take it whole. SI units."""
-
-    lower: Array
-    upper: Array
-    min_rate: float
-    psi_bound: float  # 0: periodic
-    steepest: float
-    longest_twist: float
 
 
 class Grain(NamedTuple):
@@ -138,7 +128,7 @@ class Viable:
         self,
         arm: ArmGeometry,
         plane: TwistPlane,
-        held: Held,
+        held: Constraints,
         branches: npt.NDArray[np.bool_],
         reach: float,
         rows: int = ROWS,

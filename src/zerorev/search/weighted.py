@@ -18,13 +18,10 @@ from typing import get_args
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Objective, Settings
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
 from zerorev.motion.criteria import measure, objective_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
-from zerorev.motion.kinematics import inverse, joint_rates, tcp_pose
 from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order
@@ -41,15 +38,11 @@ GOLDEN = (np.sqrt(5) - 1) / 2
 ATTEMPTS = 4  # to make good what the points on a leg did not see
 
 
-def search_weighted(
-    robot: Robot, tool: Tool, hole: Hole, settings: Settings, known: Sequence[Candidate] = ()
-) -> Candidate | None:
+def search_weighted(drilling: Drilling, settings: Settings, known: Sequence[Candidate] = ()) -> Candidate | None:
     """The best motion of one hole: fewest reversals (weighted), then the motion threshold, then the weighted sum.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled, as for the exact search.
+        drilling: robot, tool and hole, as for the exact search.
         settings: with `weights`; without, the objective's one criterion is all that weighs.
         known: motions of this hole that were found otherwise; the answer is no worse than any of them.
 
@@ -58,11 +51,11 @@ def search_weighted(
         joints have to reverse, what is around the exact search's motions and makes the same joints reverse.
     """
     alone = (replace(settings, objective=word, weights=()) for word in get_args(Objective))
-    singly = (search(robot, tool, hole, one, known) for one in alone)
+    singly = (search(drilling, one, known) for one in alone)
     found = [*(one for one in singly if one is not None), *known]
     if not found:
         return None
-    problem = _Problem(robot, tool, hole, settings)
+    problem = _WeightedLegs(drilling, settings)
     order = problem.order
     best = min(found, key=order.rank)
     if not best.keeps_threshold:
@@ -76,25 +69,25 @@ def search_weighted(
     return min(found, key=order.rank)
 
 
-class _Problem(LegPairs):
+class _WeightedLegs(LegPairs):
     """One hole, and the search for its best pair of legs."""
 
     @cached_property
     def order(self) -> Order:
         """Which motion is better than another."""
-        return Order(self.robot, self.tool, self.hole, self.settings)
+        return Order(self.drilling, self.settings)
 
     def point(self, found: Candidate) -> Point:
         """The motion as two legs out of one spin."""
         plunge, retract = found.profile.twist_rate.tolist()
-        measures = measure(self.robot, self.tool, self.hole, found.evaluation, self.settings)
+        measures = measure(self.drilling, found.evaluation, self.settings)
         return Point(objective_of(self.settings)(measures), found.branch, found.psi_target, (plunge, retract))
 
     def survey(self) -> list[Point]:
         """The best pairs without reversal of a grid of spins, the least of each valley, best first."""
         periodic = self.settings.psi_bound is None
         psi = target_spins(self.settings.psi_bound, GRID)
-        theta_s, theta_psi = joint_rates(self.robot, self.tool, self.hole, np.zeros(psi.size), psi)
+        theta_s, theta_psi = joint_rates(self.drilling, np.zeros(psi.size), psi)
         valleys: list[Point] = []
         for posture in range(4):
             for points in self._surveyed(psi, theta_s, theta_psi, posture):
@@ -107,14 +100,14 @@ class _Problem(LegPairs):
 
     def _surveyed(self, psi: Array, theta_s: Array, theta_psi: Array, posture: int) -> Iterator[list[Point]]:
         """The best pairs of each spin on either wrist flip of a posture, from the rates at the target."""
-        branches = [branch for branch in (2 * posture, 2 * posture + 1) if self.hole.branch in (None, branch)]
+        branches = [branch for branch in (2 * posture, 2 * posture + 1) if self.drilling.hole.branch in (None, branch)]
         with np.errstate(divide="ignore", invalid="ignore"):
             kappa = (-theta_s / theta_psi)[:, 2 * posture]
         reached = np.isfinite(kappa).all(axis=1)
         if not branches or not reached.any():
             return
         kappa, sense = kappa[reached], np.sign(theta_psi[reached, 2 * posture])
-        steepest = steepest_twist(self.settings, self.hole.depth)
+        steepest = steepest_twist(self.settings, self.drilling.hole.depth)
         # measured along each side, from the outermost critical rate outwards, close together at first
         nearest = np.stack([kappa.max(axis=1), -kappa.min(axis=1)], axis=1).ravel()
         share = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, SLOPES)])
@@ -148,8 +141,7 @@ class _Problem(LegPairs):
         turns, _ = turns_within(legs.low.min(axis=0), legs.high.max(axis=0), held, self.settings.near_joints)
         # the seed's own angles, and those of the other spins next to them
         spins = np.concatenate([[seed.psi_t], psi_t])
-        poses = tcp_pose(self.hole, 0.0, spins) @ np.linalg.inv(self.tool.T_flange_tcp)
-        first, *others = inverse(self.robot, poses)[:, seed.branch]
+        first, *others = self.drilling.angles(0.0, spins)[:, seed.branch]
         at_target = others + turns - 2 * np.pi * np.round((others - first) / (2 * np.pi))
         room = np.stack([at_target - held.lower, held.upper - at_target], axis=1)
         return sides._replace(room=np.repeat(np.where(inside.any(axis=1), np.inf, room), 2, axis=0))
@@ -196,7 +188,7 @@ class _Problem(LegPairs):
             if not np.isfinite(point.cost):
                 return None
             periodic = self.settings.psi_bound is None
-            profile = straight_motion(self.hole.depth, point.psi_t, point.slopes, periodic=periodic)
+            profile = straight_motion(self.drilling.hole.depth, point.psi_t, point.slopes, periodic=periodic)
             found = self.order.candidate(profile, point.branch)
             if found is None or found.keeps_threshold:
                 return found

@@ -18,7 +18,8 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.model.profile import Profile
 from zerorev.motion.criteria import thesis_objective
-from zerorev.motion.evaluation import evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.thesis.methods import BUDGET, Method, Outcome, Problem, methods_named
 from zerorev.thesis.sampled import SAMPLES, even_fractions
 
@@ -142,7 +143,9 @@ class Comparison:
 
     def problem(self, hole: Hole) -> Problem:
         """What the methods are given."""
-        return Problem(self.job.robot, self.job.tool, hole, self.bound, samples=self.samples, crowded=self.crowded)
+        return Problem(
+            Drilling(self.job.robot, self.job.tool, hole), self.bound, samples=self.samples, crowded=self.crowded
+        )
 
     @property
     def bound(self) -> float:
@@ -252,11 +255,11 @@ def runs(asked: Comparison) -> Iterator[Rescored]:
 
 
 def _rescored(problem: Problem, method: str, seed: int | None, outcome: Outcome | None, seconds: float) -> Rescored:
-    hole = problem.hole
+    hole = problem.drilling.hole
     if outcome is None:
         return Rescored(hole.id, method, seed, None, WORST, None, None, seconds)
     profile = Profile.straight(hole.depth, *outcome.spins.tolist())
-    evaluation = evaluate(problem.robot, problem.tool, hole, profile, outcome.branch)
+    evaluation = evaluated(Drilling(problem.drilling.robot, problem.drilling.tool, hole), profile, outcome.branch)
     score, worth = evaluation.score, thesis_objective(evaluation)
     if score is None:
         return Rescored(hole.id, method, seed, outcome, max(WORST, worth), None, None, seconds)

@@ -15,10 +15,8 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.search.exact import search
 from zerorev.thesis import population_methods as populations
 from zerorev.thesis import scipy_methods as scipys
@@ -36,18 +34,14 @@ class Problem:
     """A hole, and what is to be least there: eq. 4.7 of the motion's samples, on the best of the branches.
 
     Attributes:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         bound: spins are within +- this [rad]; the thesis' unless given.
         weighing: of eq. 4.7; with its motion threshold the exact search keeps it, too.
         samples: steps of a motion at which it is looked at.
         crowded: whether the samples crowd at the ends of the legs; the thesis' are evenly spread.
     """
 
-    robot: Robot
-    tool: Tool
-    hole: Hole
+    drilling: Drilling
     bound: float = np.pi
     weighing: Weighing = THESIS
     samples: int = SAMPLES
@@ -56,7 +50,7 @@ class Problem:
     def objective(self) -> SampledObjective:
         """The objective, its counters at zero."""
         fractions = (crowded_fractions if self.crowded else even_fractions)(self.samples)
-        return SampledObjective(self.robot, self.tool, self.hole, self.weighing, fractions=fractions)
+        return SampledObjective(self.drilling, self.weighing, fractions=fractions)
 
 
 @dataclass(frozen=True)
@@ -104,7 +98,7 @@ def _exact(problem: Problem, seed: int, budget: int) -> Outcome | None:
     del seed, budget
     weighing = problem.weighing
     settings = Settings(weighing.min_rate, weighing.min_rate_rule, problem.bound)
-    found = search(problem.robot, problem.tool, problem.hole, settings)
+    found = search(problem.drilling, settings)
     return None if found is None else replace(_outcome(problem, found.profile.psi), branch=found.branch)
 
 

@@ -21,7 +21,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import twist_plane
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.sampled import SAMPLES, SampledObjective, Weighing
 from zerorev.thesis.threads import share_out
 
@@ -56,7 +56,7 @@ def parameter_map(
     Args:
         robot: the arm.
         tool: the drill.
-        hole: what is drilled; its branch, where it has one, is the only one looked at.
+        hole: what is drilled; its branch, where it has one, is the only one examined.
         weighing: weights, motion threshold, and how the turns are chosen.
         size: K, spins on each of the three axes.
         samples: steps on the whole path, an even number.
@@ -150,8 +150,9 @@ def _evaluate(
     threads: int | None, progress: Callable[[int, int], None] | None,
 ) -> tuple[Array, Int8, Int8, Array]:  # fmt: skip
     """Score, reversals, branch and travel [deg], each (M, K, K)."""
-    objective = SampledObjective(robot, tool, hole, weighing, samples=samples, threads=threads)
-    plane, limits = twist_plane(robot, tool, hole), robot.limits
+    drilling = Drilling(robot, tool, hole)
+    objective = SampledObjective(drilling, weighing, samples=samples, threads=threads)
+    plane, limits = drilling.plane, robot.limits
     weights = weighing.reversals / 6, weighing.travel / (12 * np.pi)
     shape = (target.size, outer.size, outer.size)
     score, travel = np.empty(shape), np.empty(shape)

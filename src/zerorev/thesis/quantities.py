@@ -6,6 +6,7 @@ from zerorev.maps.quantities import stroke_found
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import Question
 from zerorev.model.quantity import Found, Quantity
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.stroke import Way, thesis_stroke
 
 __all__ = ["QUANTITIES"]
@@ -13,7 +14,7 @@ __all__ = ["QUANTITIES"]
 
 def _quantity(way: Way, how: str) -> Quantity:
     def solve(question: Question, hole: Hole, seed: int) -> Found | None:
-        found = thesis_stroke(question.robot, question.tool, hole, question.settings, way, seed)
+        found = thesis_stroke(Drilling(question.robot, question.tool, hole), question.settings, way, seed)
         return stroke_found(found.depth, found.profile, found.branch)
 
     return Quantity(

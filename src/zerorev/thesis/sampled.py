@@ -20,12 +20,9 @@ import numpy.typing as npt
 from zerorev.errors import InputError
 from zerorev.kernels.sampled import judge
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.evaluation import Evaluation, evaluate
-from zerorev.motion.kinematics import twist_plane
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import Evaluation, evaluated
 from zerorev.thesis.threads import share_out
 
 __all__ = [
@@ -165,9 +162,7 @@ class SampledObjective:
 
     def __init__(
         self,
-        robot: Robot,
-        tool: Tool,
-        hole: Hole,
+        drilling: Drilling,
         weighing: Weighing = THESIS,
         *,
         samples: int = SAMPLES,
@@ -177,9 +172,7 @@ class SampledObjective:
         """Prepare to judge motions.
 
         Args:
-            robot: the arm.
-            tool: the drill.
-            hole: what is drilled; its branch, where it has one, is the only one looked at.
+            drilling: robot, tool and hole; its branch, where it has one, is the only one looked at.
             weighing: weights, motion threshold and choice of turns.
             samples: steps on the whole path, an even number.
             fractions: samples of a leg instead, from 0 at the target to 1 at its outer end, shape (L + 1,).
@@ -190,13 +183,12 @@ class SampledObjective:
         """
         if threads is not None and threads < 1:
             raise InputError(f"{threads} threads", where="threads", accepted="1 or more, or None for one a core")
-        self.robot, self.tool, self.hole, self.weighing, self.threads = robot, tool, hole, weighing, threads
+        self.drilling, self.weighing, self.threads = drilling, weighing, threads
         self.fractions = even_fractions(samples) if fractions is None else np.ascontiguousarray(fractions, dtype=float)
         _check_fractions(self.fractions)
         self.evaluations, self.first_zero = 0, None  # type: int, int | None
-        self._plane = twist_plane(robot, tool, hole)
         self.least = np.zeros(self.fractions.size)
-        leg = weighing.min_rate * hole.depth
+        leg = weighing.min_rate * drilling.hole.depth
         if weighing.min_rate_rule == "pointwise":
             # the kernel looks at the sine of a step
             self.least[:-1] = np.sin(np.minimum(leg * np.diff(self.fractions), np.pi / 2))[::-1]
@@ -236,11 +228,12 @@ class SampledObjective:
         if spins.ndim != 2 or spins.shape[1] != 3:
             raise InputError(f"spins of shape {spins.shape}", accepted="(M, 3): start, target, end")
         costs, reversals = np.empty((len(spins), 8)), np.empty((len(spins), 8), dtype=np.int64)
-        weights, limits = self.weighing, self.robot.limits
+        weights, limits = self.weighing, self.drilling.robot.limits
 
         def judge_some(part: slice) -> None:
             judge(
-                self.robot.arm, self._plane, self.hole.depth, self.fractions, self.least, limits.lower, limits.upper,
+                self.drilling.robot.arm, self.drilling.plane, self.drilling.hole.depth, self.fractions, self.least,
+                limits.lower, limits.upper,
                 weights.turns == "first_point", (weights.reversals / 6, weights.travel / (12 * np.pi)), spins[part],
                 costs[part], reversals[part],
             )  # fmt: skip
@@ -259,15 +252,15 @@ class SampledObjective:
         Raises:
             InputError: no such samples.
         """
-        finer = SampledObjective(self.robot, self.tool, self.hole, self.weighing, samples=samples)
+        finer = SampledObjective(self.drilling, self.weighing, samples=samples)
         scores, reversals = finer.on_branches(np.asarray(spins)[None])
-        profile = Profile.straight(self.hole.depth, *np.asarray(spins).tolist())
-        exact = evaluate(self.robot, self.tool, self.hole, profile, branch)
+        profile = Profile.straight(self.drilling.hole.depth, *np.asarray(spins).tolist())
+        exact = evaluated(self.drilling, profile, branch)
         return LookedAtAgain(float(scores[0, branch]), int(reversals[0, branch]), exact)
 
     def _best(self, spins: Array) -> Judged:
         costs, reversals = self.on_branches(spins)
-        only = self.hole.branch
+        only = self.drilling.hole.branch
         branch = costs.argmin(axis=1) if only is None else np.full(len(costs), only)
         rows = np.arange(len(costs))
         return Judged(costs[rows, branch], branch, reversals[rows, branch])

@@ -9,11 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.thesis.sampled import SampledObjective, Weighing
 from zerorev.thesis.swarm import TABLE_4, run_swarm
 
@@ -41,13 +39,11 @@ class Stroke:
     branch: int | None = None
 
 
-def thesis_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings, way: Way, seed: int) -> Stroke:
+def thesis_stroke(drilling: Drilling, settings: Settings, way: Way, seed: int) -> Stroke:
     """The deepest stroke of a hole as the thesis looks for it: a lower bound, as a swarm may miss what is there.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin; its depth is not looked at.
+        drilling: target, direction and reference of the spin; its depth is not looked at.
         settings: whose `min_rate` the objective asks for, and whose `psi_bound` holds the swarm, +-180 deg where none.
         way: halving 0 to 200 mm (eq. 4.9), or stepping down from 200 mm by 5 mm.
         seed: of every swarm.
@@ -60,7 +56,7 @@ def thesis_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings, way:
     def succeeds(depth_mm: float) -> bool:
         nonlocal deepest
         depth = depth_mm / 1e3
-        found = run_swarm(SampledObjective(robot, tool, replace(hole, depth=depth), weighing, threads=1), scheme)
+        found = run_swarm(SampledObjective(drilling.deep(depth), weighing, threads=1), scheme)
         if found.reversals != 0:
             return False
         if depth > deepest.depth:

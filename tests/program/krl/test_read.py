@@ -11,6 +11,7 @@ from oracles.places import GOLDEN
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.export import export
@@ -55,7 +56,7 @@ def runnable(kuka, drill, direction, spins):
         for start in range(0, 360, 30):
             profile = Profile.straight(DEPTH, *np.deg2rad(np.array(spins) + start))
             for branch in range(8):
-                if joint_path(kuka, drill, hole, profile, branch, samples=400).runs:
+                if joint_path(Drilling(kuka, drill, hole), profile, branch, samples=400).runs:
                     return hole, profile
     pytest.fail("no target can be drilled")
 

@@ -7,6 +7,7 @@ import pytest
 
 from oracles.published import POSITIONS
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.report.scene.bracket import bracket
 
@@ -15,11 +16,11 @@ STEP = np.deg2rad(1.0)
 
 def rates_of(robot, tool, psi_deg, position=POSITIONS[0]):
     profile = Profile.straight(position.hole.depth, *np.deg2rad(psi_deg))
-    return bracket(robot, tool, position.hole, profile, position.branch, STEP), profile
+    return bracket(Drilling(robot, tool, position.hole), profile, position.branch, STEP), profile
 
 
 def test_the_published_plan_brackets_all_six(robot, tool, position):
-    found = bracket(robot, tool, position.hole, position.profile, position.branch, STEP)
+    found = bracket(Drilling(robot, tool, position.hole), position.profile, position.branch, STEP)
     assert found.between.all()
     start, target, end = position.psi_deg
     slopes = np.array([start - target, end - target]) / position.depth_mm

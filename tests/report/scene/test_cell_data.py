@@ -12,6 +12,7 @@ import pytest
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.report.scene.cell_data import arm_data, holes_data, motion_data, slice_data, track_data
@@ -24,7 +25,7 @@ def unpacked(text, columns=1, kind="<f4"):
 
 @pytest.fixture
 def track(robot, tool, position):
-    return track_data(robot, tool, position.hole, position.profile, position.branch, Settings())
+    return track_data(Drilling(robot, tool, position.hole), position.profile, position.branch, Settings())
 
 
 def test_the_joints_bring_the_tip_along_the_path(robot, tool, position, track):
@@ -44,7 +45,7 @@ def test_distance_is_counted_from_the_target(position, track):
 
 def test_time_is_by_the_feeds(robot, tool, position):
     settings = Settings(feed_plunge=5e-3, feed_retract=20e-3)
-    track = track_data(robot, tool, position.hole, position.profile, position.branch, settings)
+    track = track_data(Drilling(robot, tool, position.hole), position.profile, position.branch, settings)
     seconds, x = unpacked(track["seconds"]), unpacked(track["x_mm"])
     depth = position.hole.depth
     assert seconds[-1] == pytest.approx(depth / 5e-3 + depth / 20e-3, rel=1e-6)
@@ -55,7 +56,7 @@ def test_reversals_are_samples_and_are_where_evaluate_finds_them(robot, tool, po
     position = positions[0]
     profile = replace(position.profile, psi=np.deg2rad([14.0, -5.0, 40.0]))
     score = evaluate(robot, tool, position.hole, profile, position.branch).score
-    track = track_data(robot, tool, position.hole, profile, position.branch, Settings())
+    track = track_data(Drilling(robot, tool, position.hole), profile, position.branch, Settings())
     assert score.reversals > 0
     assert track["reversals"] == score.reversals
     assert [mark["joint"] for mark in track["marks"]] == [event.joint for event in score.events]
@@ -69,7 +70,7 @@ def test_reversals_are_samples_and_are_where_evaluate_finds_them(robot, tool, po
 def test_a_joint_turns_round_at_its_mark(robot, tool, positions):
     """Seen in the very angles that are played."""
     position = positions[0]
-    held = motion_data(robot, tool, position.hole, position.profile, position.branch, Settings())["held"]
+    held = motion_data(Drilling(robot, tool, position.hole), position.profile, position.branch, Settings())["held"]
     joints, x = unpacked(held["joints_deg"], 6), unpacked(held["x_mm"])
     assert held["marks"]
     for mark in held["marks"]:
@@ -80,7 +81,7 @@ def test_a_joint_turns_round_at_its_mark(robot, tool, positions):
 
 
 def test_the_baseline_keeps_the_spin_of_the_start(robot, tool, position):
-    data = motion_data(robot, tool, position.hole, position.profile, position.branch, Settings())
+    data = motion_data(Drilling(robot, tool, position.hole), position.profile, position.branch, Settings())
     assert data["hole"] == position.hole.id
     assert unpacked(data["held"]["psi_deg"]) == pytest.approx(np.rad2deg(position.profile.psi[0]), abs=1e-4)
 
@@ -100,7 +101,7 @@ def test_the_ribbon_starts_at_the_tip_and_turns_with_the_spin(position, track):
 def test_a_motion_that_cannot_be_run_is_drawn_as_far_as_it_goes(robot, tool, positions):
     hole = replace(positions[0].hole, depth=1.2)
     profile = Profile(np.array([1.2, 0, 1.2]), np.zeros(3))
-    track = track_data(robot, tool, hole, profile, positions[0].branch, Settings())
+    track = track_data(Drilling(robot, tool, hole), profile, positions[0].branch, Settings())
     assert not track["runs"]
     assert track["why"]
     assert track["faults_mm"]
@@ -110,7 +111,7 @@ def test_a_motion_that_cannot_be_run_is_drawn_as_far_as_it_goes(robot, tool, pos
 
 def test_nothing_is_drawn_of_a_motion_out_of_reach(robot, tool):
     hole = Hole("far", np.array([9.0, 0, 0]), np.array([1.0, 0, 0]), 0.05)
-    assert track_data(robot, tool, hole, Profile.straight(0.05, 0, 0, 0), 0, Settings()) is None
+    assert track_data(Drilling(robot, tool, hole), Profile.straight(0.05, 0, 0, 0), 0, Settings()) is None
 
 
 def test_all_of_it_is_plain_json(robot, tool, published):

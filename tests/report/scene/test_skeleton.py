@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.skeleton import home, joints_at, skeleton
 
 
@@ -31,9 +32,9 @@ def test_at_home_the_upper_arm_is_upright_and_the_forearm_ahead(any_robot, tool)
 
 def test_it_stands_in_the_published_postures(robot, tool):
     for position in POSITIONS:
-        joints = joints_at(robot, tool, position.hole, position.profile.psi[1], position.branch)
+        joints = joints_at(Drilling(robot, tool, position.hole), position.profile.psi[1], position.branch)
         apart = np.rad2deg(joints) - position.axis_deg[1]
         np.testing.assert_allclose(apart, 360 * np.round(apart / 360), atol=0.01)
         np.testing.assert_allclose(skeleton(robot, tool, joints)[-1] * 1e3, position.target_mm, atol=1e-9)
     far = replace(POSITIONS[0].hole, target=np.array([9.0, 0.0, 0.0]))
-    assert joints_at(robot, tool, far, 0.0, 4) is None
+    assert joints_at(Drilling(robot, tool, far), 0.0, 4) is None

@@ -10,7 +10,9 @@ import pytest
 from oracles.published import POSITIONS
 from zerorev.files.io import read_robot
 from zerorev.model.tool import Tool
-from zerorev.motion.kinematics import critical_rates, inverse, jacobian, joint_rates, tcp_pose
+from zerorev.motion.critical import kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.motion.kinematics import inverse, jacobian, tcp_pose
 from zerorev.report.scene.twist_map import LIMITED, NEAR_SINGULAR, OPEN, SINGULAR_BELOW, UNREACHED, twist_map
 
 BRANCHES = [(0, 4), (1, 0), (2, 4), (0, 0), (0, None), (1, None), (2, None)]
@@ -19,7 +21,9 @@ IDS = [f"{POSITIONS[n].name}, {'all' if branch is None else branch}" for n, bran
 
 @pytest.fixture(scope="module")
 def maps(robot, tool):
-    return {case: twist_map(robot, tool, POSITIONS[case[0]].hole, case[1], shape=(31, 91)) for case in BRANCHES}
+    return {
+        case: twist_map(Drilling(robot, tool, POSITIONS[case[0]].hole), case[1], shape=(31, 91)) for case in BRANCHES
+    }
 
 
 def joints_at(robot, tool, hole, s, p):
@@ -64,7 +68,7 @@ def test_spread_is_that_of_the_best_branch(robot, tool, maps, case):
     found, hole = maps[case], POSITIONS[case[0]].hole
     random = np.random.default_rng(case[0])
     s, p = (random.integers(0, n, 200) for n in found.zone.shape)
-    kappa = np.rad2deg(critical_rates(robot, tool, hole, found.standoff[s], found.psi[p])) * 1e-3
+    kappa = np.rad2deg(kappa_of(*joint_rates(Drilling(robot, tool, hole), found.standoff[s], found.psi[p]))) * 1e-3
     spread = np.ptp(kappa, axis=-1)  # (N, 8)
     here = found.spread[s, p]
     known = np.isfinite(here)
@@ -86,7 +90,8 @@ def test_a_line_is_where_spin_does_not_move_its_joint(robot, tool, maps, case):
         s, p = line.points.T
         assert (np.diff(np.sign(np.diff(s))) == 0).all() or len(s) > 2
         rates = [
-            joint_rates(robot, tool, hole, s, p + side)[1][:, line.branch, line.joint - 1] for side in (-1e-5, 0, 1e-5)
+            joint_rates(Drilling(robot, tool, hole), s, p + side)[1][:, line.branch, line.joint - 1]
+            for side in (-1e-5, 0, 1e-5)
         ]
         assert np.abs(rates[1]).max() < 1e-8
         crossing = ~np.isnan(rates[0] * rates[2])  # one side of a line along the edge of reach is nothing
@@ -97,7 +102,7 @@ def test_no_sign_change_is_missed(robot, tool, maps):
     """Where theta_psi changes sign between neighbouring spins, a line of that joint runs between them."""
     found, hole = maps[0, 4], POSITIONS[0].hole
     s = found.standoff[15]
-    theta = joint_rates(robot, tool, hole, np.full(found.psi.size, s), found.psi)[1][:, 4]
+    theta = joint_rates(Drilling(robot, tool, hole), np.full(found.psi.size, s), found.psi)[1][:, 4]
     for i in range(6):
         rate = theta[:, i]
         for n in np.flatnonzero(rate[:-1] * rate[1:] < 0):
@@ -156,7 +161,7 @@ def test_the_bits_say_which_joints_and_which_singularity(robot, tool, maps):
 def test_a_tool_without_lever_has_joints_that_spin_never_moves(robot):
     straight = Tool("straight", np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0.1], [0, 0, 0, 1]]))
     hole = replace(POSITIONS[0].hole, target=np.array([0.4, 0.1, 0.6]))
-    found = twist_map(robot, straight, hole, 4, shape=(11, 31))
+    found = twist_map(Drilling(robot, straight, hole), 4, shape=(11, 31))
     assert (found.zone < UNREACHED).any()
     assert {1, 2, 3} <= set(found.stuck)
     assert not {1, 2, 3} & {line.joint for line in found.lines}
@@ -165,7 +170,7 @@ def test_a_tool_without_lever_has_joints_that_spin_never_moves(robot):
 @pytest.mark.parametrize("name", ["abb_irb4600_60_205", "staubli_tx2_90l", "yaskawa_gp8"])
 def test_other_robots(tool, name):
     robot = read_robot(name)
-    found = twist_map(robot, tool, POSITIONS[0].hole, None, corner=-1e-3, shape=(11, 31))
+    found = twist_map(Drilling(robot, tool, POSITIONS[0].hole), None, corner=-1e-3, shape=(11, 31))
     assert found.standoff[0] == -1e-3
     assert (found.zone < UNREACHED).any()
     assert np.isfinite(found.spread[found.zone < UNREACHED]).mean() > 0.9

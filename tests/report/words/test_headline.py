@@ -9,6 +9,7 @@ import pytest
 
 from zerorev.model.plan import Certificate, Verification
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.motion_look import look
 from zerorev.report.words.headline import headline
 
@@ -49,13 +50,13 @@ def test_a_hole_without_motion_or_without_answer(published):
 def test_a_motion_in_hand_takes_the_place_of_the_planned_one(published):
     plan, answer = published, replace(published.holes[0], verified=CHECKED, deepest=0.09)
     hole, held = answer.hole, Profile.straight(answer.hole.depth, 0.2, 0.2, 0.2)
-    seen = look(plan.robot, plan.tool, hole, held, answer.motion.branch, plan.settings)
+    seen = look(Drilling(plan.robot, plan.tool, hole), held, answer.motion.branch, plan.settings)
     found = line(plan, answer, seen)
     assert (found.after, found.verdict, found.tone) == (seen.score.reversals, "by hand, not checked", "warn")
     assert found.travel == pytest.approx(np.rad2deg(seen.score.travel))
     assert line(plan, answer).margin == pytest.approx(40)
     assert found.margin is None  # of the plan, and not of this motion
-    lost = look(plan.robot, plan.tool, hole, Profile.straight(hole.depth, 3.0, 3.0, 3.0), 4, plan.settings)
+    lost = look(Drilling(plan.robot, plan.tool, hole), Profile.straight(hole.depth, 3.0, 3.0, 3.0), 4, plan.settings)
     assert not lost.runs
     found = line(plan, answer, lost)
     assert (found.after, found.verdict, found.why) == (None, "cannot run", lost.why)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.search.exact import search
 from zerorev.thesis.reproduce import Context, workspace
@@ -35,9 +36,9 @@ def test_plane_of_table_5_is_its_own_mirror_and_cells_are_drilled_as_said(robot,
     np.testing.assert_allclose(depth[0::2], depth[1::2], atol=0.05)
     for place, found in zip(target, depth, strict=True):
         hole = hole_along_x("cell", tuple(place), found * 0.99)
-        motion = search(robot, tool, hole, CONTEXT.thesis)
+        motion = search(Drilling(robot, tool, hole), CONTEXT.thesis)
         assert evaluate(robot, tool, hole, motion.profile, motion.branch).score.reversals == 0
-        beyond = search(robot, tool, hole_along_x("cell", tuple(place), found * 1.02), CONTEXT.thesis)
+        beyond = search(Drilling(robot, tool, hole_along_x("cell", tuple(place), found * 1.02)), CONTEXT.thesis)
         assert beyond is None or beyond.reversals > 0
 
 

@@ -13,6 +13,7 @@ from oracles.proof_trees import THESIS, around, by_hand, logged, without_node
 from zerorev.errors import InputError
 from zerorev.model.proof_tree import NO_VALUE, Claim
 from zerorev.motion import kinematics
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.search.bounds.proof import prove
 from zerorev.search.problem import Problem
 
@@ -49,7 +50,7 @@ class TestTheArm:
             arm, sign = arm_of(robot.arm, tool, hole), np.array(robot.arm.sign)
             for _ in range(4):
                 psi, s = rng.uniform(-3, 3), rng.uniform(0, hole.depth)
-                outwards, spinning = kinematics.joint_rates(robot, tool, hole, s, psi)
+                outwards, spinning = joint_rates(Drilling(robot, tool, hole), s, psi)
                 T = kinematics.tcp_pose(hole, s, psi) @ np.linalg.inv(tool.T_flange_tcp)
                 joints = kinematics.inverse(robot, T)
                 for posture in range(4):
@@ -236,7 +237,7 @@ class TestAnUnsoundSearch:
         middle, half = (limits.lower + limits.upper) / 2, (limits.upper - limits.lower) / 2
         narrow = replace(kuka, limits=replace(limits, lower=middle - 0.6 * half, upper=middle + 0.6 * half))
         trees = []
-        prove(Problem(narrow, drill, position(1), zr.Settings(min_rate=0.0)), None, 100_000, log=trees)
+        prove(Problem(Drilling(narrow, drill, position(1)), zr.Settings(min_rate=0.0)), None, 100_000, log=trees)
         tree = trees[0]
         assert check_tree(narrow, drill, position(1), tree, sample=20).verdict == "confirmed"
         check = check_tree(kuka, drill, position(1), tree, sample=80)

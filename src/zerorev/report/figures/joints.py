@@ -12,7 +12,8 @@ from matplotlib.lines import Line2D
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Event, HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
-from zerorev.motion.evaluation import evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
 from zerorev.report.scene.joint_range import joint_range
@@ -55,7 +56,7 @@ def joint_angles(plan: Plan, hole: HolePlan) -> Figure:
     events = hole.score.events if hole.score else None
     planned = Curve(*_angles(plan, hole, motion, motion.profile), events)
     constant = Profile(motion.profile.standoff, np.full_like(motion.profile.psi, motion.profile.psi[0]))
-    found = evaluate(plan.robot, plan.tool, hole.hole, constant, motion.branch, plan.settings)
+    found = evaluated(Drilling(plan.robot, plan.tool, hole.hole), constant, motion.branch, plan.settings)
     baseline = Curve(*_angles(plan, hole, motion, constant), found.score.events if found.score else None)
     for i, axes in enumerate(grid.flat):
         _one_joint(axes, plan, motion.profile, i, planned, baseline)
@@ -83,7 +84,7 @@ def _angles(plan: Plan, hole: HolePlan, motion: Motion, profile: Profile) -> tup
     """Path distance [mm] and controller angles [deg] with the turns of the motion, from whose start they begin."""
     distance = sample_distances(profile, SAMPLES)
     standoff, psi = profile.at(distance)
-    joints = joints_along(plan.robot, plan.tool, hole.hole, motion.branch, standoff, psi)
+    joints = joints_along(Drilling(plan.robot, plan.tool, hole.hole), motion.branch, standoff, psi)
     turns = np.round((motion.joints[0] - joints[0]) / (2 * np.pi)) * 2 * np.pi
     return distance * 1e3, np.rad2deg(joints + turns)
 

@@ -15,6 +15,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
 from zerorev.report.scene.field import Field, field
 
@@ -55,7 +56,8 @@ def twist_plane(plan: Plan, hole: HolePlan) -> Figure:
     corner = profile.standoff[profile.corner]
     low, high = _spin_range(profile.psi)
     patch = field(
-        plan.robot, plan.tool, hole.hole, motion.branch, np.linspace(corner, profile.standoff.max(), STANDOFFS),
+        Drilling(plan.robot, plan.tool, hole.hole), motion.branch,
+        np.linspace(corner, profile.standoff.max(), STANDOFFS),
         np.linspace(low, high, int(np.ceil((high - low) / SPIN_STEP)) + 1),
     )  # fmt: skip
     # signed path distance from the corner [mm]: the plunge on the left, the retract on the right

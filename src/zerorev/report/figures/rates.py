@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
 from zerorev.report.scene.bracket import Bracket, bracket
 
@@ -36,7 +37,7 @@ def critical_rates(plan: Plan, hole: HolePlan) -> Figure:
         InputError: the hole has no motion.
     """
     motion = style.motion_of(hole)
-    rates = bracket(plan.robot, plan.tool, hole.hole, motion.profile, motion.branch, SPIN_STEP)
+    rates = bracket(Drilling(plan.robot, plan.tool, hole.hole), motion.profile, motion.branch, SPIN_STEP)
     chosen, slopes, here = rates.chosen, rates.slopes, rates.here
 
     figure = style.new_figure("Critical twist rates at the target", plan, hole, height=5.6)

@@ -15,6 +15,7 @@ from zerorev.maps.answers import Cells, best_cells, cells_of
 from zerorev.maps.planes import Across, is_grid, planes_of
 from zerorev.maps.replan import question_of
 from zerorev.model._arrays import Array
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.cell import direction_rose, named_direction, robot_in_cell
 from zerorev.report.figures.style import png
 from zerorev.report.figures.workspace_map import best_plane, map_planes, map_surface, map_views
@@ -102,7 +103,7 @@ def _robot_at_best(found: Dataset, cells: Cells) -> Array | None:
     (row, column), question = best[0], question_of(found)
     hole = question.hole(cells.target[row] / 1e3, cells.direction[column])
     psi = float(np.deg2rad(cells.psi_deg[row, column, 1]))
-    joints = joints_at(question.robot, question.tool, hole, psi, int(cells.branch[row, column]))
+    joints = joints_at(Drilling(question.robot, question.tool, hole), psi, int(cells.branch[row, column]))
     return None if joints is None else skeleton(question.robot, question.tool, joints) * 1e3
 
 

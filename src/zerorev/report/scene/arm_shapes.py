@@ -177,9 +177,8 @@ class _Girths(NamedTuple):
 
 
 def _girths(robot: Robot) -> _Girths:
-    arm = robot.arm
-    reach = arm.c2 + float(np.hypot(arm.c3, arm.a2))
-    return _Girths(0.155 * reach, 0.122 * reach, 0.094 * reach, min(0.062 * reach, 0.62 * arm.c4))
+    reach = robot.reach
+    return _Girths(0.155 * reach, 0.122 * reach, 0.094 * reach, min(0.062 * reach, 0.62 * robot.arm.c4))
 
 
 def _foot(c1: float, girth: float) -> Iterator[Solid]:

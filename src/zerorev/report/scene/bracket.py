@@ -12,10 +12,8 @@ import numpy.typing as npt
 
 from zerorev.files.units import deg_per_mm
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.field import critical, stuck_joints
 
 __all__ = ["FAR_OFF", "Bracket", "bracket", "broken_at_poles"]
@@ -89,13 +87,11 @@ class Bracket:
         return broken_at_poles(np.rad2deg(self.psi), self.kappa[:, joint], self.theta_psi[:, joint])
 
 
-def bracket(robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, step: float) -> Bracket:
+def bracket(drilling: Drilling, profile: Profile, branch: int, step: float) -> Bracket:
     """The critical rates around the corner of a motion.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         step: between the spins that are looked at [rad].
@@ -103,8 +99,8 @@ def bracket(robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int,
     n = profile.corner
     chosen, corner = float(profile.psi[n]), float(profile.standoff[n])
     psi = chosen + np.arange(-np.pi, np.pi + step / 2, step)
-    kappa, theta_psi = critical(robot, tool, hole, branch, np.full_like(psi, corner), psi)
-    here = critical(robot, tool, hole, branch, np.array([corner]), np.array([chosen]))[0][0]
+    kappa, theta_psi = critical(drilling, branch, np.full_like(psi, corner), psi)
+    here = critical(drilling, branch, np.array([corner]), np.array([chosen]))[0][0]
     return Bracket(psi, kappa, theta_psi, chosen, here, np.asarray(deg_per_mm(profile.twist_rate[[n - 1, n]])))
 
 

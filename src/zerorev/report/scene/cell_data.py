@@ -18,8 +18,9 @@ from zerorev.model.plan import HolePlan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
-from zerorev.motion.kinematics import tcp_pose, twist_plane
+from zerorev.motion.kinematics import tcp_pose
 from zerorev.report.scene.arm_shapes import Solid, arm_solids, chain, rings, tool_solids
 from zerorev.report.scene.motion_look import Mark, held, look, signed_distance
 from zerorev.report.scene.palette import BASELINE_COLOUR, CANNOT_RUN, JOINT_COLOURS, REVERSAL_COLOURS
@@ -57,7 +58,7 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
         "rings": [{"place": _mm(place), "radius": _mm(radius)} for place, radius in rings(robot)],
         "tip": _mm(tool.T_flange_tcp[:3, 3]),
         "home_deg": deg(home(robot)).tolist(),
-        "reach_mm": float(mm(robot.arm.c2 + np.hypot(robot.arm.c3, robot.arm.a2))),
+        "reach_mm": float(mm(robot.reach)),
         "colours": {
             "joints": JOINT_COLOURS, "reversals": REVERSAL_COLOURS, "cannot": CANNOT_RUN, "baseline": BASELINE_COLOUR,
         },
@@ -96,42 +97,38 @@ def reversals_data(holes: Sequence[Hole], answers: Mapping[str, HolePlan]) -> li
 
 
 def motion_data(
-    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings, samples: int = SAMPLES
+    drilling: Drilling, profile: Profile, branch: int, settings: Settings, samples: int = SAMPLES
 ) -> dict[str, Any]:
     """A motion and, beside it, its baseline: the same path at the constant spin of its start.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         settings: turns of the joints, feeds.
         samples: how many points, about.
     """
-    planned = track_data(robot, tool, hole, profile, branch, settings, samples)
-    baseline = track_data(robot, tool, hole, held(profile), branch, settings, samples)
-    return {"hole": hole.id, "planned": planned, "held": baseline}
+    planned = track_data(drilling, profile, branch, settings, samples)
+    baseline = track_data(drilling, held(profile), branch, settings, samples)
+    return {"hole": drilling.hole.id, "planned": planned, "held": baseline}
 
 
 def track_data(
-    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings, samples: int = SAMPLES
+    drilling: Drilling, profile: Profile, branch: int, settings: Settings, samples: int = SAMPLES
 ) -> dict[str, Any] | None:
     """One motion to be played, drawn as far as it can be; None where the branch reaches no point of it.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         settings: turns of the joints, feeds.
         samples: how many points, about; reversals are always among them.
     """
-    looked = look(robot, tool, hole, profile, branch, settings)
+    looked = look(drilling, profile, branch, settings)
     corner = profile.distance[profile.corner]
     path = joint_path(
-        robot, tool, hole, profile, branch, near=settings.near_joints, samples=samples,
+        drilling, profile, branch, near=settings.near_joints, samples=samples,
         through=sorted({float(corner + mark.distance) for mark in looked.marks if mark.leg != "target"}),
     )  # fmt: skip
     reached = ~np.isnan(path.joints[:, 0])
@@ -147,7 +144,7 @@ def track_data(
         "standoff_mm": packed(mm(path.standoff)),
         "psi_deg": packed(deg(path.psi)),
         "joints_deg": packed(deg(path.joints[nearest])),
-        "ribbon_mm": packed(mm(_ribbon(robot, tool, hole, path.standoff, path.psi))),
+        "ribbon_mm": packed(mm(_ribbon(drilling, path.standoff, path.psi))),
         "reversals": looked.reversals,
         "marks": [_mark(mark) for mark in looked.marks],
         "faults_mm": [[float(mm(fault.start)), float(mm(fault.end))] for fault in looked.faults],
@@ -211,12 +208,11 @@ def _mark(mark: Mark) -> dict[str, Any]:
     return {"joint": mark.joint, "name": mark.name, "x_mm": float(mm(mark.distance)), "leg": mark.leg}
 
 
-def _ribbon(robot: Robot, tool: Tool, hole: Hole, standoff: Array, psi: Array) -> Array:
+def _ribbon(drilling: Drilling, standoff: Array, psi: Array) -> Array:
     """The tip, and a point beside it towards the wrist centre, whose circle is the lever of the spin [m], (N, 6)."""
-    wrist = np.array(twist_plane(robot, tool, hole).wrist[:2])
-    lever = float(np.hypot(*wrist))
+    wrist, lever = np.array(drilling.plane.wrist[:2]), drilling.wrist_offset
     way = wrist / lever if lever > 1e-6 else np.array([0.0, 1.0])
-    T = tcp_pose(hole, standoff, psi)
+    T = tcp_pose(drilling.hole, standoff, psi)
     beside = T[:, :3, :2] @ way
     return np.hstack([T[:, :3, 3], T[:, :3, 3] + float(np.clip(lever / 2, *RIBBON)) * beside])
 

@@ -8,16 +8,12 @@ import numpy as np
 
 from zerorev.files.units import deg_per_mm
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
+from zerorev.motion.critical import NO_LEVER, kappa_of, spread_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
-from zerorev.motion.kinematics import inverse, joint_rates, tcp_pose
 
-__all__ = ["Field", "critical", "field", "kappa_of", "over_limits", "spread_of", "stuck_joints"]
-
-NO_LEVER = 1e-9  # |theta_psi| below which spin does not move a joint
-NIL = 1e-9  # [deg/mm] |theta_s| below which the stroke does not move a joint (conventions: signature)
+__all__ = ["Field", "critical", "field", "over_limits", "stuck_joints"]
 
 
 @dataclass(frozen=True)
@@ -43,37 +39,19 @@ class Field:
     over_limit: np.ndarray
 
 
-def critical(robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array) -> tuple[Array, Array]:
+def critical(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> tuple[Array, Array]:
     """Critical rates kappa [deg/mm] and theta_psi [1], each (..., 6), at points (...,) of one branch (theory §2).
 
     kappa is infinite for a joint that spin does not move, and NaN for one that nothing moves: it needs no bracket.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: whose twist plane it is.
+        drilling: whose twist plane it is.
         branch: 0..7.
         standoff: [m], shape (...,).
         psi: spin [rad], shape (...,).
     """
-    theta_s, theta_psi = (rates[..., branch, :] for rates in joint_rates(robot, tool, hole, standoff, psi))
-    return kappa_of(theta_s, theta_psi), theta_psi
-
-
-def kappa_of(theta_s: Array, theta_psi: Array) -> Array:
-    """Critical rates [deg/mm], shape (..., 6), of theta_s [rad/m] and theta_psi [1], each (..., 6); see `critical`."""
-    stuck = np.abs(theta_psi) < NO_LEVER
-    still = stuck & (np.abs(deg_per_mm(theta_s)) < NIL)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        kappa = np.where(stuck, np.inf, deg_per_mm(-theta_s / theta_psi))
-    return np.where(still, np.nan, kappa)
-
-
-def spread_of(kappa: Array) -> Array:
-    """Twist spread [deg/mm], shape (...,), of critical rates (..., 6): inf where one is, NaN where none is known."""
-    with np.errstate(invalid="ignore"):
-        spread = np.fmax.reduce(kappa, axis=-1) - np.fmin.reduce(kappa, axis=-1)
-    return np.where(np.isinf(kappa).any(axis=-1), np.inf, spread)
+    theta_s, theta_psi = (rates[..., branch, :] for rates in joint_rates(drilling, standoff, psi))
+    return deg_per_mm(kappa_of(theta_s, theta_psi)), theta_psi
 
 
 def over_limits(robot: Robot, joints: Array) -> np.ndarray:
@@ -82,27 +60,27 @@ def over_limits(robot: Robot, joints: Array) -> np.ndarray:
         return np.asarray(~turns_within(joints, joints, robot.limits)[1])
 
 
-def field(robot: Robot, tool: Tool, hole: Hole, branch: int, standoff: Array, psi: Array) -> Field:
+def field(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Field:
     """The field on the grid of stand-offs [m], shape (S,), and spins [rad], shape (P,), of one branch.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: whose twist plane it is.
+        drilling: whose twist plane it is.
         branch: 0..7.
         standoff: [m], shape (S,).
         psi: spin [rad], shape (P,).
     """
     s, p = np.meshgrid(standoff, psi, indexing="ij")
-    kappa, theta_psi = critical(robot, tool, hole, branch, s, p)
-    joints = inverse(robot, tcp_pose(hole, s, p) @ np.linalg.inv(tool.T_flange_tcp))[..., branch, :]
+    kappa, theta_psi = critical(drilling, branch, s, p)
+    joints = drilling.angles(s, p)[..., branch, :]
     reached = ~np.isnan(joints[..., 0])
     spread = np.where(reached, spread_of(kappa), np.nan)
-    return Field(standoff, psi, spread, theta_psi, stuck_joints(theta_psi), reached, over_limits(robot, joints))
+    return Field(
+        standoff, psi, spread, theta_psi, stuck_joints(theta_psi), reached, over_limits(drilling.robot, joints)
+    )
 
 
 def stuck_joints(theta_psi: Array) -> tuple[int, ...]:
     """Joints (0..5) that spin does not move at any of the points (..., 6): the finding of a tool without lever."""
     flat = np.abs(theta_psi.reshape(-1, 6))
     flat = flat[~np.isnan(flat[:, 0])]
-    return tuple(i for i in range(6) if flat.size and (flat[:, i] < NO_LEVER).all())
+    return tuple(i for i in range(6) if flat.size and (flat[:, i] <= NO_LEVER).all())

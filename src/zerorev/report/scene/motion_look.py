@@ -9,13 +9,12 @@ import numpy as np
 
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Event, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
-from zerorev.model.tool import Tool
-from zerorev.motion.evaluation import Evaluation, evaluate, event_distance, meets_threshold, steady_rates
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import Evaluation, evaluated, event_distance, meets_threshold, steady_rates
 from zerorev.motion.joint_path import JUMP, JointPath, joint_path
 
 __all__ = ["Curves", "Fault", "Look", "Mark", "curves", "held", "look", "signed_distance"]
@@ -104,47 +103,41 @@ class Curves:
     names: tuple[str, ...]
 
 
-def look(robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings) -> Look:
+def look(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Look:
     """Look at one motion; a few milliseconds.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         settings: turns, and the motion threshold.
     """
-    found = evaluate(robot, tool, hole, profile, branch, settings)
+    found = evaluated(drilling, profile, branch, settings)
     score = found.score
     if score is None:
-        path = joint_path(robot, tool, hole, profile, branch, near=settings.near_joints)
-        faults = tuple(_faults(robot, profile, path))
-        return Look(False, _why(robot, profile, path, found, branch), faults, None, (), None, False)
-    marks = tuple(_mark(robot, profile, event) for event in score.events)
+        path = joint_path(drilling, profile, branch, near=settings.near_joints)
+        faults = tuple(_faults(drilling.robot, profile, path))
+        return Look(False, _why(drilling.robot, profile, path, found, branch), faults, None, (), None, False)
+    marks = tuple(_mark(drilling.robot, profile, event) for event in score.events)
     steady = steady_rates(score, settings)
     meets = meets_threshold(score, settings)
     margin = float(steady.min()) if steady.size else None
-    return Look(True, "" if meets else _too_slow(robot, score, settings), (), score, marks, margin, meets)
+    return Look(True, "" if meets else _too_slow(drilling.robot, score, settings), (), score, marks, margin, meets)
 
 
-def curves(
-    robot: Robot, tool: Tool, hole: Hole, profile: Profile, branch: int, settings: Settings, samples: int = 200
-) -> Curves:
+def curves(drilling: Drilling, profile: Profile, branch: int, settings: Settings, samples: int = 200) -> Curves:
     """The six joint curves of a motion, drawn even where it cannot be run.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: what is drilled.
+        drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
         settings: whose `near_joints` chooses the turns.
         samples: how many points, about.
     """
-    near = settings.near_joints
-    path = joint_path(robot, tool, hole, profile, branch, near=near, samples=samples)
-    still = joint_path(robot, tool, hole, held(profile), branch, near=near, samples=samples)
+    robot, near = drilling.robot, settings.near_joints
+    path = joint_path(drilling, profile, branch, near=near, samples=samples)
+    still = joint_path(drilling, held(profile), branch, near=near, samples=samples)
     return Curves(
         signed_distance(profile, path.distance), path.joints, still.joints if still.runs else None, robot.limits,
         robot.joint_names,

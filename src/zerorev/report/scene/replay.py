@@ -17,6 +17,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.cell_data import SAMPLES, arm_data, holes_data, motion_data
 from zerorev.report.scene.urdf_meshes import Mesh
 from zerorev.report.words.tables import hole_findings, slowest
@@ -79,9 +80,8 @@ def _hole(plan: Plan, answer: HolePlan, samples: int) -> dict[str, Any]:
     motion, score = answer.motion, answer.score
     played = None
     if motion is not None:
-        played = motion_data(
-            plan.robot, plan.tool, answer.hole, motion.profile, motion.branch, plan.settings, samples
-        )  # fmt: skip
+        drilling = Drilling(plan.robot, plan.tool, answer.hole)
+        played = motion_data(drilling, motion.profile, motion.branch, plan.settings, samples)
     return {
         "id": answer.hole.id,
         "verdict": "no motion" if score is None else _count(score.reversals, "reversal"),

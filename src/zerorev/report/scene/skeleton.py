@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward, inverse, tcp_pose
 
 __all__ = ["home", "joints_at", "skeleton"]
@@ -20,18 +20,16 @@ def home(robot: Robot) -> Array:
     return np.asarray((upright_and_ahead + np.array(robot.arm.offset)) * np.array(robot.arm.sign))
 
 
-def joints_at(robot: Robot, tool: Tool, hole: Hole, psi: float, branch: int) -> Array | None:
+def joints_at(drilling: Drilling, psi: float, branch: int) -> Array | None:
     """Joints [rad], shape (6,), with the drill at the bottom of a hole, or None where the branch cannot reach.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: target, direction and reference of the spin.
+        drilling: robot, tool and hole: target, direction and reference of the spin.
         psi: spin [rad].
         branch: 0..7.
     """
-    T_base_flange = tcp_pose(hole, 0.0, psi) @ np.linalg.inv(tool.T_flange_tcp)
-    joints = inverse(robot, T_base_flange)[branch]
+    T_base_flange = tcp_pose(drilling.hole, 0.0, psi) @ np.linalg.inv(drilling.tool.T_flange_tcp)
+    joints = inverse(drilling.robot, T_base_flange)[branch]
     return None if np.isnan(joints).any() else np.asarray(joints)
 
 

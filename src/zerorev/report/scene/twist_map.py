@@ -13,13 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from contourpy import FillType, contour_generator
 
+from zerorev.files.units import deg_per_mm
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
 from zerorev.motion.criteria import from_singular
-from zerorev.motion.kinematics import inverse, joint_rates, tcp_pose
-from zerorev.report.scene.field import kappa_of, over_limits, spread_of, stuck_joints
+from zerorev.motion.critical import kappa_of, spread_of
+from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.report.scene.field import over_limits, stuck_joints
 
 __all__ = ["LIMITED", "NEAR_SINGULAR", "OPEN", "UNREACHED", "Region", "SignLine", "TwistMap", "twist_map"]
 
@@ -94,25 +93,22 @@ class TwistMap:
     stuck: tuple[int, ...]
 
 
-def twist_map(
-    robot: Robot, tool: Tool, hole: Hole, branch: int | None, corner: float = 0.0, shape: tuple[int, int] = SHAPE
-) -> TwistMap:
+def twist_map(drilling: Drilling, branch: int | None, corner: float = 0.0, shape: tuple[int, int] = SHAPE) -> TwistMap:
     """The twist map of a hole; some fifty milliseconds.
 
     Args:
-        robot: the arm.
-        tool: the drill.
-        hole: whose stroke it spans.
+        drilling: robot, tool and hole: whose stroke it spans.
         branch: 0..7, or None for the envelope of all.
         corner: stand-off of the motion's corner [m], below 0 where it is placed deeper.
         shape: how many stand-offs and spins.
     """
-    here = _Place(robot, tool, hole, np.arange(8) if branch is None else np.array([branch]))
-    standoff, finely = np.linspace(corner, hole.depth, shape[0]), np.linspace(-np.pi, np.pi, 2 * shape[1] - 1)
+    here = _Place(drilling, np.arange(8) if branch is None else np.array([branch]))
+    standoff, finely = np.linspace(corner, drilling.hole.depth, shape[0]), np.linspace(-np.pi, np.pi, 2 * shape[1] - 1)
     psi = finely[::2]
     zone, limited, singular = here.zones(*np.meshgrid(standoff, psi, indexing="ij"))
     theta_s, theta_psi = here.rates(*np.meshgrid(standoff, finely, indexing="ij"))
-    spread = np.where(zone < UNREACHED, spread_of(kappa_of(theta_s[:, ::2], theta_psi[:, ::2])), np.nan)
+    spread = deg_per_mm(spread_of(kappa_of(theta_s[:, ::2], theta_psi[:, ::2])))
+    spread = np.where(zone < UNREACHED, spread, np.nan)
     # the mildest zone, and in it the least spread
     with np.errstate(invalid="ignore"):
         rank = zone + np.where(np.isfinite(spread), spread / (1 + spread), 1 - 1e-9)
@@ -130,25 +126,23 @@ def twist_map(
 
 @dataclass(frozen=True)
 class _Place:
-    """What is asked of the points of a hole's twist plane: some branches, shape (B,), of a robot with its tool."""
+    """What is asked of the points of a hole's twist plane: some branches, shape (B,)."""
 
-    robot: Robot
-    tool: Tool
-    hole: Hole
+    drilling: Drilling
     branches: npt.NDArray[np.int64]
 
     def rates(self, s: Array, p: Array) -> tuple[Array, Array]:
         """theta_s and theta_psi, each (..., B, 6), at points (...,)."""
-        theta_s, theta_psi = joint_rates(self.robot, self.tool, self.hole, s, p)
+        theta_s, theta_psi = joint_rates(self.drilling, s, p)
         return theta_s[..., self.branches, :], theta_psi[..., self.branches, :]
 
     def zones(self, s: Array, p: Array) -> tuple[Bytes, Bytes, Bytes]:
         """Zone, joints over their limits and near singularities (bits), each (..., B), at points (...,)."""
-        poses = tcp_pose(self.hole, s, p) @ np.linalg.inv(self.tool.T_flange_tcp)
-        joints = inverse(self.robot, poses)[..., self.branches, :]
-        limited = np.packbits(over_limits(self.robot, joints), axis=-1, bitorder="little")[..., 0]
+        robot = self.drilling.robot
+        joints = self.drilling.angles(s, p)[..., self.branches, :]
+        limited = np.packbits(over_limits(robot, joints), axis=-1, bitorder="little")[..., 0]
         with np.errstate(invalid="ignore"):
-            near = from_singular(self.robot, joints) < SINGULAR_BELOW
+            near = from_singular(robot, joints) < SINGULAR_BELOW
         singular = np.packbits(near, axis=-1, bitorder="little")[..., 0]
         zone = np.where(limited > 0, LIMITED, np.where(singular > 0, NEAR_SINGULAR, OPEN))
         return np.where(np.isnan(joints[..., 0]), UNREACHED, zone).astype(np.uint8), limited, singular

@@ -136,7 +136,7 @@ def robots_table(robots: Iterable[Robot]) -> Table:
 def wrist_reach(robot: Robot) -> float:
     """Greatest distance [m] of the wrist centre from axis 1: the arm stretched out at the height of the shoulder."""
     arm = robot.arm
-    return float(np.hypot(arm.a1 + arm.c2 + np.hypot(arm.a2, arm.c3), arm.b))
+    return float(np.hypot(arm.a1 + robot.reach, arm.b))
 
 
 def robot_sheet(robot: Robot) -> dict[str, Any]:

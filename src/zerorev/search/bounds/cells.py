@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import intervals as ops
+from zerorev.kernels.layout import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
-from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.bounds.expressions import Expression, Sheet, Tape, added
 from zerorev.search.bounds.rates import PostureFormulas, numbers_of
 

@@ -14,10 +14,11 @@ from itertools import product
 import numpy as np
 
 from zerorev.kernels import outer_cells, outer_sets
+from zerorev.kernels.layout import Constraints
 from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
 from zerorev.search.bounds.cells import CellFormulas, cell_formulas
-from zerorev.search.bounds.free_legs import Cells, Family, Grid, Leg, Numbers, Rules
+from zerorev.search.bounds.free_legs import Cells, Family, Grid, Leg, Numbers
 from zerorev.search.bounds.tree import model_limits
 from zerorev.search.problem import Problem
 
@@ -62,7 +63,7 @@ def bound_free_depth(problem: Problem, depth: float, boxes: int) -> FreeBound:
         depth: the deepest stroke known [m]; 0: none.
         boxes: budget; two cells count as a box of legs. The first grid, some 20,000 boxes, is examined in any case.
     """
-    return _Bounder(problem, max(depth * (1 + FINER), SHALLOWEST * problem.robot.reach), boxes).run()
+    return _Bounder(problem, max(depth * (1 + FINER), SHALLOWEST * problem.drilling.robot.reach), boxes).run()
 
 
 class _Bounder:
@@ -71,9 +72,10 @@ class _Bounder:
     def __init__(self, problem: Problem, wanted: float, boxes: int) -> None:
         self.problem, self.wanted, self.left = problem, wanted, boxes * CELLS_PER_BOX
         self.spent = 0
-        settings, robot = problem.settings, problem.robot
+        settings, robot = problem.settings, problem.drilling.robot
         lower, upper = model_limits(robot)
-        self.rules = Rules(settings.min_rate * (1 - SAME_RATE) - NIL, settings.max_twist * (1 + 1e-9), lower, upper)
+        least = settings.min_rate * (1 - SAME_RATE) - NIL
+        self.rules = Constraints(lower, upper, least, steepest=settings.max_twist * (1 + 1e-9))
         limited = tuple(bool(width < 2 * np.pi) for width in upper - lower)
         # of cells anywhere, and of those next to the elbow's singularity, where all angles are wanted
         self.formulas: dict[int, tuple[CellFormulas, CellFormulas]] = {}
@@ -100,7 +102,7 @@ class _Bounder:
         """Of the first slabs: even at first, then ever higher, to where no arm reaches."""
         high = self.wanted / SLABS
         edges = (high * np.arange(round(EVEN * SLABS) + 1)).tolist()
-        while edges[-1] < 2 * self.problem.robot.reach:
+        while edges[-1] < 2 * self.problem.drilling.robot.reach:
             high *= STRETCH
             edges.append(edges[-1] + high)
         return np.array(edges)
@@ -164,7 +166,7 @@ class _Bounder:
 
     def _tabulated(self, posture: int, grid: Grid, slab: Numbers, column: Numbers, flips: Numbers) -> Cells:
         """What is known of some cells; `flips` is filled in."""
-        arm, plane, count = self.problem.robot.arm, self.problem.plane, column.size
+        arm, plane, count = self.problem.drilling.robot.arm, self.problem.plane, column.size
         anywhere, near_elbow = self.formulas[posture]
         raw, bent, none = np.empty((count, 6, outer_cells.RAW)), np.empty(count), np.empty((0, 6, 2))
         outer_cells.tabulate(

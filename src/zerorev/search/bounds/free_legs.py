@@ -11,25 +11,9 @@ import numpy.typing as npt
 from zerorev.kernels import outer_sets
 from zerorev.model._arrays import Array
 
-__all__ = ["Cells", "Family", "Grid", "Leg", "Numbers", "Rules"]
+__all__ = ["Cells", "Family", "Grid", "Leg", "Numbers"]
 
 Numbers = npt.NDArray[np.int64]
-
-
-class Rules(NamedTuple):
-    """What legs are held to; a NamedTuple, so that kernels take it whole. SI units, model angles.
-
-    Attributes:
-        min_rate: of every joint, its way [rad/m].
-        steepest: twist rate [rad/m].
-        lower: limits of the joints, shape (6,).
-        upper: likewise.
-    """
-
-    min_rate: float
-    steepest: float
-    lower: Array
-    upper: Array
 
 
 class Grid(NamedTuple):

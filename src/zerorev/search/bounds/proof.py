@@ -14,12 +14,12 @@ from itertools import product
 import numpy as np
 
 from zerorev.kernels import bound_nodes, bound_tree
+from zerorev.kernels.layout import BoundRules
 from zerorev.model._arrays import Array
 from zerorev.model.plan import Optimality
 from zerorev.model.proof_tree import ProofTree
 from zerorev.motion.joint_path import outward_rates
 from zerorev.search.bounds.log import logged_tree
-from zerorev.search.bounds.tree import Rules as BoundRules
 from zerorev.search.bounds.tree import Search, model_limits
 from zerorev.search.cut_short import descended, steadied
 from zerorev.search.problem import Problem
@@ -205,21 +205,21 @@ class Prover:
     def _note(self, search: Search) -> None:
         """Keep the tree of a search that has ended."""
         if self.log is not None:
-            self.log.append(logged_tree(search, self.problem.hole.branch))
+            self.log.append(logged_tree(search, self.problem.drilling.hole.branch))
 
     def _search(self, min_rate: float, most: float, best: Candidate | None) -> Search:
         problem = self.problem
-        lower, upper = model_limits(problem.robot)
-        branch = problem.hole.branch
+        lower, upper = model_limits(problem.drilling.robot)
+        branch = problem.drilling.hole.branch
         flips = np.ones(2, dtype=bool)
         if branch is not None:
             # the tapes have sin(q5) >= 0; where joint 5 is counted the other way, A5 < 0 is that one
-            flips[:] = np.arange(2) == (branch % 2 if problem.robot.arm.sign[4] > 0 else 1 - branch % 2)
+            flips[:] = np.arange(2) == (branch % 2 if problem.drilling.robot.arm.sign[4] > 0 else 1 - branch % 2)
         weights = problem.weights * self.scale
         # where joints reverse, more looks show better what they travel
         (few, many), straight_on = LOOKS, most < problem.weights.min()
         rules = BoundRules(
-            depth=problem.hole.depth,
+            depth=problem.drilling.hole.depth,
             min_rate=min_rate,
             psi_bound=problem.settings.psi_bound or 0.0,
             lower=lower,
@@ -228,7 +228,7 @@ class Prover:
             weights=weights,
             most_cost=most * self.scale,
             least_weight=float(weights.min()),
-            looks=few if straight_on and problem.hole.depth < SHORT * problem.robot.size else many,
+            looks=few if straight_on and problem.drilling.hole.depth < SHORT * problem.drilling.robot.size else many,
         )
         # a leg travels at least its twist, and a joint that reverses n times at most n + 1 times its range
         ranges, reversals = upper - lower, most / max(float(problem.weights.min()), 1e-3)
@@ -237,7 +237,9 @@ class Prover:
             assert best is not None
             twist = min(twist, best.score.travel)
         postures = sorted({one // 2 for one in problem.branches})
-        return Search(problem.robot.arm, problem.plane, rules, postures, twist, GAP, logged=self.log is not None)
+        return Search(
+            problem.drilling.robot.arm, problem.plane, rules, postures, twist, GAP, logged=self.log is not None
+        )
 
     def _is_better(self, found: Candidate, best: Candidate | None) -> bool:
         """Whether a motion beats the best one by more than the last digits, by which the answer would vary."""
@@ -284,10 +286,8 @@ class Prover:
         problem, shares = self.problem, np.linspace(0.0, 1.0, TURNS_OF_LEG)
         places: list[float] = []
         for slope in slopes:
-            s = shares * problem.hole.depth
-            rates = outward_rates(
-                problem.robot, problem.tool, problem.hole, 2 * posture, s, psi + slope * s, np.full(s.size, slope)
-            )
+            s = shares * problem.drilling.hole.depth
+            rates = outward_rates(problem.drilling, 2 * posture, s, psi + slope * s, np.full(s.size, slope))
             if np.isnan(rates).any():
                 places.append(float(shares[np.argmax(np.isnan(rates).any(axis=1))]))
                 continue

@@ -19,9 +19,9 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import intervals as ops
+from zerorev.kernels.layout import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry
-from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.bounds.expressions import Expression, Number, Sheet, Tape, added
 
 __all__ = ["Formulas", "PostureFormulas", "formulas", "numbers_of"]

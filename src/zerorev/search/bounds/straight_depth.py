@@ -43,7 +43,7 @@ def bound_depth(problem: Problem, depth: float, boxes: int, log: list[ProofTree]
         boxes: budget, in boxes of legs that are examined.
         log: out, the tree of each search that was made, or None.
     """
-    shallowest = SHALLOWEST * problem.robot.reach
+    shallowest = SHALLOWEST * problem.drilling.robot.reach
     searches: list[_AnyMotion] = []
 
     def spent() -> int:
@@ -77,7 +77,7 @@ class _AnyMotion:
 
     def __init__(self, problem: Problem, depth: float, *, logged: bool) -> None:
         settings = replace(problem.settings, min_rate_rule="pointwise", weights=())
-        there = replace(problem, hole=replace(problem.hole, depth=depth), settings=settings)
+        there = replace(problem, drilling=problem.drilling.deep(depth), settings=settings)
         self._prover = Prover(there, 0, log=[] if logged else None)
         self._search: Search | None = None
         self.depth = depth

@@ -8,47 +8,17 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes, bound_tree, intervals
+from zerorev.kernels.layout import BoundRules, TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.robot import ArmGeometry, Robot
-from zerorev.motion.kinematics import TwistPlane
 from zerorev.search.bounds.rates import Formulas, formulas
 
-__all__ = ["Rules", "Search", "model_limits"]
+__all__ = ["Search", "model_limits"]
 
 SPINS, SLOPES = 32, 8  # intervals to begin with, of spins and of slopes within a turn either way
 FAR = 1.4 * np.pi  # [rad] of twist, of intervals beyond a turn: with the spins of a node less than a turn in all
 FIRST_ROOM = 4096
 LEAST_ASPECT = 0.01  # of boxes: their width in twist over that in spin
-
-
-class Rules(NamedTuple):
-    """What legs are held to; a NamedTuple, so that kernels take it whole. SI units, model angles.
-
-    Attributes:
-        depth: of the legs [m].
-        min_rate: of a joint that does not reverse [rad/m]; 0: none.
-        psi_bound: spins within +- this [rad]; 0: periodic.
-        lower: limits of the joints, shape (6,).
-        upper: likewise.
-        flips: which wrist flips count, shape (2,).
-        weights: what a reversal of each joint costs, shape (6,).
-        most_cost: what a motion may cost at the most.
-        least_weight: of any joint.
-        looks: at how many stand-offs a box is examined at first: 4, or 8.
-        aspect: width of a box in twist as a share of its width in spin, to which slopes are halved.
-    """
-
-    depth: float
-    min_rate: float
-    psi_bound: float
-    lower: Array
-    upper: Array
-    flips: npt.NDArray[np.bool_]
-    weights: Array
-    most_cost: float
-    least_weight: float
-    looks: int
-    aspect: float = 1.0
 
 
 class Tree(NamedTuple):
@@ -103,7 +73,7 @@ class Search:
     """
 
     def __init__(
-        self, arm: ArmGeometry, plane: TwistPlane, rules: Rules, postures: list[int], twist: float, gap: float,
+        self, arm: ArmGeometry, plane: TwistPlane, rules: BoundRules, postures: list[int], twist: float, gap: float,
         *, logged: bool = False,
     ) -> None:  # fmt: skip
         self.rules = rules
@@ -151,7 +121,7 @@ class Search:
             self.tree = _grown(self.tree)
 
 
-def _planted(rules: Rules, postures: list[int], twist: float, log: int) -> Tree:
+def _planted(rules: BoundRules, postures: list[int], twist: float, log: int) -> Tree:
     """All spins and slopes, in a few coarse nodes."""
     bound = rules.psi_bound or np.pi
     spins = np.linspace(-bound, bound, max(2, int(np.ceil(SPINS * bound / np.pi))) + 1)

@@ -10,7 +10,8 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.motion.evaluation import evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.motion.joint_path import joint_path
 from zerorev.motion.kinematics import forward
 from zerorev.thesis.measures import mirrored
@@ -206,9 +207,9 @@ def _spins(context: Context) -> tuple[Result, ...]:
     rounded = _joints(context, first.printed_deg) - _joints(context, first.psi_deg)
     held = Profile.straight(second.hole.depth, *[np.deg2rad(second.psi_deg[0])] * 3)
     branch, _ = best_of(context, second.hole, second.psi_deg)
-    score = evaluate(context.robot, context.tool, second.hole, held, branch).score
+    score = evaluated(Drilling(context.robot, context.tool, second.hole), held, branch).score
     assert score is not None
-    path = np.rad2deg(joint_path(context.robot, context.tool, second.hole, held, branch, samples=4000).joints)
+    path = np.rad2deg(joint_path(Drilling(context.robot, context.tool, second.hole), held, branch, samples=4000).joints)
     plunge = path[: len(path) // 2 + 1]
     backed = float(abs(plunge[-1, 4] - plunge[0, 4]))
     still = float(np.ptp(path[:, 3]))

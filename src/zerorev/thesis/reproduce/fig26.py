@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.style import png
 from zerorev.search.exact import search
 from zerorev.thesis.figures.parameter_map import parameter_slices, zero_volume
@@ -114,7 +115,7 @@ def _example(context: Context) -> Result:
     there, back = np.array([MAP_EXAMPLE_RAD, MAP_EXAMPLE_RAD[::-1]])[:, None]
     told = []
     for name, turns in WAYS.items():
-        objective = SampledObjective(context.robot, context.tool, POSITIONS[0].hole, Weighing(turns=turns))
+        objective = SampledObjective(Drilling(context.robot, context.tool, POSITIONS[0].hole), Weighing(turns=turns))
         counts = [int(objective.reversals(spins)[0]) for spins in (there, back)]
         told.append(f"{name}: " + " and ".join("none can be run" if n < 0 else f"{n} reversals" for n in counts))
     return Result(
@@ -129,7 +130,7 @@ def _example(context: Context) -> Result:
 
 def _share(context: Context, found: Dataset) -> Result:
     zero, best = zero_reversals(found), best_cell(found)
-    exact = search(context.robot, context.tool, POSITIONS[0].hole, context.thesis)
+    exact = search(Drilling(context.robot, context.tool, POSITIONS[0].hole), context.thesis)
     assert exact is not None
     travel = f"best cell {best.travel_deg:.1f}° of travel" if best.reversals == 0 else "no cell of this grid has zero"
     return Result(

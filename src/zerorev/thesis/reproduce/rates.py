@@ -9,7 +9,8 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.motion.evaluation import evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.report.figures.style import png
 from zerorev.search.exact import search
 from zerorev.search.rank import Candidate
@@ -41,7 +42,7 @@ def make(context: Context) -> Section:
         low, high = rate_interval(found, len(runs))
         rates.append((100 * found / len(runs), 100 * low, 100 * high))
         exact, bounded = (
-            search(context.robot, context.tool, position.hole, replace(context.thesis, psi_bound=bound))
+            search(Drilling(context.robot, context.tool, position.hole), replace(context.thesis, psi_bound=bound))
             for bound in (None, np.pi)
         )
         assert exact is not None
@@ -118,7 +119,7 @@ def _result(n: int, found: int, located: int, *, runs_made: int, ended: Array, e
 def _located(context: Context, hole: Hole, result: SwarmResult) -> int | None:
     """Reversals of the best motion of a run by located events."""
     profile = Profile.straight(hole.depth, *result.spins)
-    score = evaluate(context.robot, context.tool, hole, profile, result.branch).score
+    score = evaluated(Drilling(context.robot, context.tool, hole), profile, result.branch).score
     return None if score is None else score.reversals
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from zerorev.model.profile import Profile
-from zerorev.motion.evaluation import evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import evaluated
 from zerorev.report.figures.style import png
 from zerorev.search.exact import search
 from zerorev.thesis.figures import swarm as figures
@@ -97,7 +98,7 @@ def make(context: Context) -> Section:
 def _motions(context: Context, first: SwarmResult, runs: list[SwarmResult]) -> Table:
     """The thesis' motion, swarms' and the exact one, counted on samples and by located events."""
     ranked = sorted(runs, key=lambda result: result.score)
-    found = search(context.robot, context.tool, POSITION.hole, context.thesis)
+    found = search(Drilling(context.robot, context.tool, POSITION.hole), context.thesis)
     assert found is not None
     branch, _ = best_of(context, POSITION.hole, POSITION.psi_deg)
     motions = [("published", POSITION.profile.psi, branch)]
@@ -112,10 +113,12 @@ def _motions(context: Context, first: SwarmResult, runs: list[SwarmResult]) -> T
     for name, psi, branch in motions:
         hole = replace(POSITION.hole, branch=branch)
         counted = [
-            int(SampledObjective(context.robot, context.tool, hole, samples=samples).reversals(psi[None])[0])
+            int(SampledObjective(Drilling(context.robot, context.tool, hole), samples=samples).reversals(psi[None])[0])
             for samples in (SAMPLES, FINAL_SAMPLES)
         ]
-        located = evaluate(context.robot, context.tool, hole, Profile.straight(hole.depth, *psi), branch).score
+        located = evaluated(
+            Drilling(context.robot, context.tool, hole), Profile.straight(hole.depth, *psi), branch
+        ).score
         assert located is not None
         travel = float(np.rad2deg(located.travel))
         rows.append((name, *np.rad2deg(psi).tolist(), branch, *counted, travel, located.reversals))

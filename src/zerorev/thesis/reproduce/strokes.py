@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from zerorev.model.hole import Hole
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.style import png
 from zerorev.search.deepest import deepest_stroke
 from zerorev.thesis.figures.reproduced import strokes_beside
@@ -113,7 +114,7 @@ def make(context: Context) -> Section:
 
 
 def _finds_zero(context: Context, hole: Hole, seed: int, depth_mm: float) -> bool:
-    objective = SampledObjective(context.robot, context.tool, replace(hole, depth=depth_mm / 1e3), threads=1)
+    objective = SampledObjective(Drilling(context.robot, context.tool, replace(hole, depth=depth_mm / 1e3)), threads=1)
     return run_swarm(objective, replace(TABLE_4, stop_at_zero=True, seed=seed)).reversals == 0
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.style import png
 from zerorev.thesis.figures import swarm as figures
 from zerorev.thesis.reproduce.context import Context
@@ -28,7 +29,9 @@ DRAWN = (3, 17, 60)  # particles whose way is drawn
 
 def run(context: Context, settings: SwarmSettings, position: int = 0) -> SwarmResult:
     """One run of the swarm at a published position (0..2), on one thread: several run side by side."""
-    return run_swarm(SampledObjective(context.robot, context.tool, POSITIONS[position].hole, threads=1), settings)
+    return run_swarm(
+        SampledObjective(Drilling(context.robot, context.tool, POSITIONS[position].hole), threads=1), settings
+    )
 
 
 def standard_runs(context: Context, position: int) -> list[SwarmResult]:

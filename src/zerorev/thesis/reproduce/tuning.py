@@ -8,6 +8,7 @@ from itertools import islice
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.style import png
 from zerorev.search.exact import search
 from zerorev.thesis.figures import swarm as figures
@@ -230,7 +231,7 @@ def _exact(context: Context) -> str:
     """What the exact search finds at both positions, every time."""
     counts = []
     for position in (EASY, HARD):
-        found = search(context.robot, context.tool, POSITIONS[position].hole, context.thesis)
+        found = search(Drilling(context.robot, context.tool, POSITIONS[position].hole), context.thesis)
         counts.append("no motion" if found is None else f"{found.reversals} reversals")
     return f"{counts[0]} at position 1, {counts[1]} at position 2, every time"
 

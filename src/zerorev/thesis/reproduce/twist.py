@@ -9,7 +9,8 @@ import numpy as np
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.motion.evaluation import Evaluation, evaluate
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import Evaluation, evaluated
 from zerorev.motion.joint_path import joint_path
 from zerorev.report.figures.style import png
 from zerorev.search.exact import search
@@ -37,7 +38,7 @@ def best_of(context: Context, hole: Hole, spins_deg: Spins) -> tuple[int, Evalua
         spins_deg: start, target, end [deg].
     """
     profile = Profile.straight(hole.depth, *np.deg2rad(spins_deg))
-    found = [evaluate(context.robot, context.tool, hole, profile, branch) for branch in range(8)]
+    found = [evaluated(Drilling(context.robot, context.tool, hole), profile, branch) for branch in range(8)]
 
     def cost(branch: int) -> tuple[float, float]:
         score = found[branch].score
@@ -109,7 +110,7 @@ def _shifts(context: Context) -> Result:
     runs = 0
     for position in POSITIONS:
         branch, found = best_of(context, position.hole, position.psi_deg)
-        path = joint_path(context.robot, context.tool, position.hole, position.profile, branch)
+        path = joint_path(Drilling(context.robot, context.tool, position.hole), position.profile, branch)
         runs += path.runs and found.score is not None
     return Result(
         "θ = θ ± 360° k",
@@ -143,8 +144,8 @@ def _chain(context: Context) -> tuple[Table, Result]:
         between: list[float | None] = []
         for chained in (True, False):
             spins = position.psi_deg[::-1] if chained and n % 2 else position.psi_deg
-            found = evaluate(
-                context.robot, context.tool, hole, Profile.straight(hole.depth, *np.deg2rad(spins)), branch
+            found = evaluated(
+                Drilling(context.robot, context.tool, hole), Profile.straight(hole.depth, *np.deg2rad(spins)), branch
             )
             assert found.motion is not None
             assert found.score is not None
@@ -234,7 +235,7 @@ def _moved(context: Context) -> tuple[Table, tuple[Result, ...], Picture]:
 
 def _least_plunge(context: Context, position: Position) -> Spins:
     settings = replace(context.thesis, objective="plunge_rotation")
-    found = search(context.robot, context.tool, position.hole, settings)
+    found = search(Drilling(context.robot, context.tool, position.hole), settings)
     assert found is not None
     return tuple(np.rad2deg(found.profile.psi).tolist())
 

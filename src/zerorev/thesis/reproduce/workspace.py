@@ -11,7 +11,7 @@ from zerorev.maps.answers import Difference, Field, difference, mirror_in_y
 from zerorev.maps.planes import planes_of
 from zerorev.model._arrays import Array
 from zerorev.model.quantity import quantity
-from zerorev.motion.kinematics import joint_rates
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.report.figures.cell import robot_in_cell
 from zerorev.report.figures.map_difference import map_difference
 from zerorev.report.figures.style import png
@@ -100,7 +100,9 @@ def _swarm_finds(context: Context, cell: tuple[Array, float]) -> bool:
     target, depth_mm = cell
     if np.isnan(depth_mm):
         return False
-    objective = SampledObjective(context.robot, context.tool, hole_along_x("cell", tuple(target), depth_mm), threads=1)
+    objective = SampledObjective(
+        Drilling(context.robot, context.tool, hole_along_x("cell", tuple(target), depth_mm)), threads=1
+    )
     return run_swarm(objective, replace(TABLE_4, stop_at_zero=True, seed=0)).reversals == 0
 
 
@@ -206,7 +208,7 @@ def _lever_of_axis_1(context: Context, x_mm: float) -> float:
     greatest = 0.0
     for y, z in ((300, 800), (400, 600), (200, 1000)):
         hole = hole_along_x("cell", (x_mm, y, z), 1.0)
-        _, theta_psi = joint_rates(context.robot, context.tool, hole, 0.0, psi)
+        _, theta_psi = joint_rates(Drilling(context.robot, context.tool, hole), 0.0, psi)
         greatest = max(greatest, float(np.nanmax(np.abs(theta_psi[..., 0]))))
     return greatest
 

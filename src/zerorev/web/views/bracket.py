@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.bracket import Bracket
 from zerorev.report.scene.bracket import bracket as bracket_of
 from zerorev.report.scene.palette import JOINT_COLOURS, signed
@@ -43,7 +44,7 @@ def bracket(session: Session) -> None:
             words.set_text("")
             drawn.show(options(None, ()))
             return
-        rates = bracket_of(job.robot, job.tool, hole, motion.profile, motion.branch, STEP)
+        rates = bracket_of(Drilling(job.robot, job.tool, hole), motion.profile, motion.branch, STEP)
         words.set_text(sentence(rates, job.robot.joint_names))
         drawn.show(options(rates, job.robot.joint_names))
 

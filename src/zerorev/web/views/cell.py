@@ -13,6 +13,7 @@ from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
 from zerorev.errors import InputError
+from zerorev.motion.drilling import Drilling
 from zerorev.report import scene
 from zerorev.report.scene.cell_data import arm_data, holes_data, reversals_data, slice_data, track_data
 from zerorev.report.scene.motion_look import held
@@ -155,14 +156,14 @@ class _Sender:
         hole, motion, job = state.hole, shown(state), state.job
         data: dict[str, Any] = {"hole": state.selected, "planned": None, "held": None}
         if hole is not None and motion is not None and job is not None:
-            profile, branch = motion.profile, motion.branch
-            data["planned"] = track_data(job.robot, job.tool, hole, profile, branch, job.settings)
+            profile, branch, drilling = motion.profile, motion.branch, Drilling(job.robot, job.tool, hole)
+            data["planned"] = track_data(drilling, profile, branch, job.settings)
             still = held(profile)
             made_of = (id(hole), id(job.settings), branch, still.standoff.tobytes(), float(still.psi[0]))
             if made_of == self._held:
                 del data["held"]  # the baseline is as it was
             else:
-                data["held"] = track_data(job.robot, job.tool, hole, still, branch, job.settings)
+                data["held"] = track_data(drilling, still, branch, job.settings)
             self._held = made_of
         else:
             self._held = None

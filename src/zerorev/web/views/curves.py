@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.joint_range import joint_range
 from zerorev.report.scene.motion_look import Curves, Look, held, look
 from zerorev.report.scene.motion_look import curves as joint_curves
@@ -63,10 +64,10 @@ def _options(state: State) -> dict[str, Any]:
     job, hole, motion = state.job, state.hole, shown(state)
     if job is None or hole is None or motion is None:
         return options(None, None, None)
-    setting = job.robot, job.tool, hole
-    found = joint_curves(*setting, motion.profile, motion.branch, job.settings, SAMPLES)
-    here = look(*setting, motion.profile, motion.branch, job.settings)
-    constant = look(*setting, held(motion.profile), motion.branch, job.settings)
+    drilling = Drilling(job.robot, job.tool, hole)
+    found = joint_curves(drilling, motion.profile, motion.branch, job.settings, SAMPLES)
+    here = look(drilling, motion.profile, motion.branch, job.settings)
+    constant = look(drilling, held(motion.profile), motion.branch, job.settings)
     return options(found, here, constant)
 
 

@@ -19,6 +19,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
 from zerorev.report.scene import motion_look
 from zerorev.report.scene import twist_map as maps
 from zerorev.report.scene.twist_map_data import map_data, motion_data
@@ -61,6 +62,11 @@ class _Wanted(NamedTuple):
     hole: Hole
     branch: int | None
     corner: float
+
+    @property
+    def drilling(self) -> Drilling:
+        """The three together."""
+        return Drilling(self.robot, self.tool, self.hole)
 
     def same(self, other: _Wanted) -> bool:
         """Whether it is the same map: robots, tools and holes are not compared number by number."""
@@ -220,12 +226,14 @@ class _TwistMap:
             self.element.run_method("show_motion", {**_empty(state), "seq": seq, "fit": fit})
             return
         job, hole = state.job, state.hole
-        seen = motion_look.look(job.robot, job.tool, hole, motion.profile, motion.branch, job.settings)
+        seen = motion_look.look(Drilling(job.robot, job.tool, hole), motion.profile, motion.branch, job.settings)
         data = motion_data(job.robot, motion.profile, seen)
         data |= {"seq": seq, "fit": fit, "in_hand": self.pending is not None or state.steered is not None}
         if seq is None:
             held = motion_look.held(motion.profile)
-            data["baseline"] = motion_look.look(job.robot, job.tool, hole, held, motion.branch, job.settings).reversals
+            data["baseline"] = motion_look.look(
+                Drilling(job.robot, job.tool, hole), held, motion.branch, job.settings
+            ).reversals
         self.element.run_method("show_motion", data)
 
     def show_map(self) -> None:
@@ -247,7 +255,7 @@ class _TwistMap:
         async with self.drawing:
             if wanted is not self.drawn:
                 return
-            found = await aside(partial(maps.twist_map, *wanted))
+            found = await aside(partial(maps.twist_map, wanted.drilling, wanted.branch, wanted.corner))
         if wanted is self.drawn:
             self.element.run_method("show_map", map_data(wanted.robot, found))
 
@@ -264,7 +272,9 @@ class _TwistMap:
         for branch in range(8):
             label = f"{branch}"
             if motion is not None:
-                found = motion_look.look(job.robot, job.tool, state.hole, motion.profile, branch, job.settings)
+                found = motion_look.look(
+                    Drilling(job.robot, job.tool, state.hole), motion.profile, branch, job.settings
+                )
                 count = "cannot be run" if found.reversals is None else f"{found.reversals} reversals"
                 label += f" · {count}" if found.reversals != 1 else " · 1 reversal"
             options.append({"value": str(branch), "label": label})

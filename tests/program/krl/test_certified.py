@@ -12,6 +12,9 @@ import zerorev as zr
 import zerorev.verify.certificate.proof as proof
 from oracles.places import JOBS
 from zerorev.model.profile import Profile
+from zerorev.motion import kinematics
+from zerorev.motion.critical import kappa_of
+from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.program.as_exported import as_exported
 from zerorev.program.krl.read import read_krl
 from zerorev.program.krl.write import to_krl
@@ -265,7 +268,7 @@ def test_a_reversal_planted_between_two_of_40_000_samples(seed, krl, published, 
 def test_rounding_alone_can_make_a_joint_reverse(kuka, drill, published, planned, plan_of):
     """Slopes a ten-millionth of a deg/mm outside the bracket: the legs hold, and only some of their programs do."""
     first, psi = published(1), np.deg2rad(-5.9388)
-    kappa = np.sort(zr.kinematics.critical_rates(kuka, drill, first.hole, 0.0, psi)[4])
+    kappa = np.sort(kappa_of(*joint_rates(Drilling(kuka, drill, first.hole), 0.0, psi))[4])
     hair, verdicts = np.deg2rad(1e-7) * 1e3, []
     for depth in np.arange(5e-3, 13e-3, 1e-3):
         profile = Profile.straight(depth, psi + (kappa[0] - hair) * depth, psi, psi + (kappa[-1] + 2.0) * depth)
@@ -346,7 +349,7 @@ def test_another_posture(kuka, published, plan_of):
     """The wrist flipped: the same poses, another branch."""
     plan = plan_of(published(1), lead_in=0.0)
     hole = plan.holes[0]
-    flipped = np.rad2deg(zr.kinematics.inverse(kuka, zr.kinematics.forward(kuka, hole.motion.joints[0]))[5])
+    flipped = np.rad2deg(kinematics.inverse(kuka, kinematics.forward(kuka, hole.motion.joints[0]))[5])
     values = ",".join(f"A{k} {angle:.5f}" for k, angle in enumerate(flipped, 1))
     (certificate,) = certify(plan, re.sub(r"\{AXIS: .*\}", f"{{AXIS: {values}}}", written(plan)))
     assert certificate.verdict == "refuted"
