@@ -16,10 +16,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import zerorev as zr
 from benchmarks.problems import hostile_problem, random_problem
-from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.proof import prove
+from zerorev.search.deepest import deepest_of
 from zerorev.search.exact import search
 from zerorev.search.optimum import deepest_as_drilled
 
@@ -56,7 +55,7 @@ class Bounded(NamedTuple):
 def proven(make: Callable[[int], Any], seed: int) -> Proven:
     """Prove one hole within each budget, the smaller ones first; what is proven already is not proven again."""
     problem = make(seed)
-    first = search(Drilling(problem.robot, problem.tool, problem.hole), problem.settings)
+    first = search(problem.drilling, problem.settings)
     seconds, rows, boxes, best = [], [], 0, first
     for budget in BUDGETS:
         if not rows or not rows[-1].proven:
@@ -76,7 +75,7 @@ def proven(make: Callable[[int], Any], seed: int) -> Proven:
     )
     fewest = tuple(best is None or one.reversals_at_least >= order.reversals(best) for one in rows)
     return Proven(
-        problem.hole.id, first is not None, tuple(seconds), boxes, fewest, tuple(one.gap for one in rows),
+        problem.drilling.hole.id, first is not None, tuple(seconds), boxes, fewest, tuple(one.gap for one in rows),
         tuple(one.proven for one in rows), better,
     )  # fmt: skip
 
@@ -84,20 +83,20 @@ def proven(make: Callable[[int], Any], seed: int) -> Proven:
 def bounded(seed: int) -> Bounded:
     """Bound the deepest stroke of one random hole, as a plan does it: a deeper one that is found is bounded in turn."""
     problem = random_problem(seed)
-    robot, tool, hole, settings = problem.robot, problem.tool, problem.hole, problem.settings
-    known = zr.deepest_stroke(robot, tool, hole, settings).depth
+    drilling, settings = problem.drilling, problem.settings
+    known = deepest_of(drilling, settings).depth
     began = time.process_time()
-    found = deepest_as_drilled(Drilling(robot, tool, hole), replace(settings, proof_boxes=DEPTH_BOXES))
+    found = deepest_as_drilled(drilling, replace(settings, proof_boxes=DEPTH_BOXES))
     seconds = time.process_time() - began
     above = found.at_most / found.depth - 1 if found.at_most is not None and found.depth > 0 else None
     none = found.at_most is not None and found.depth == 0
-    return Bounded(hole.id, seconds, above, none, found.depth > known * (1 + 1e-3))
+    return Bounded(drilling.hole.id, seconds, above, none, found.depth > known * (1 + 1e-3))
 
 
 def alone(seed: int) -> tuple[bool, float | None]:
     """Whether a bound that was driven up without a motion passes what another search has; the share it reaches."""
     problem = random_problem(seed)
-    known = search(Drilling(problem.robot, problem.tool, problem.hole), problem.settings)
+    known = search(problem.drilling, problem.settings)
     optimality = prove(problem, None, ALONE_BOXES).optimality
     if known is None:
         return True, None

@@ -84,8 +84,13 @@ def run(options: Options) -> Section:
 
 def _free(problem: Problem) -> Problem:
     """The same with free legs, on an arm of size 1."""
-    settings = replace(problem.settings, legs="free", max_twist=problem.settings.max_twist / problem.robot.size)
-    robot, tool, hole, settings = resized(problem.robot, problem.tool, problem.hole, settings, 1 / problem.robot.size)
+    settings = replace(
+        problem.settings, legs="free", max_twist=problem.settings.max_twist / problem.drilling.robot.size
+    )
+    drilling = problem.drilling
+    robot, tool, hole, settings = resized(
+        drilling.robot, drilling.tool, drilling.hole, settings, 1 / drilling.robot.size
+    )
     return Problem(Drilling(robot, tool, hole), settings)
 
 

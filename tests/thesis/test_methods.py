@@ -68,7 +68,7 @@ class Planted(Problem):
 
 @pytest.fixture
 def planted(robot, tool, positions):
-    return Planted(robot, tool, positions[0].hole, bound=BOX)
+    return Planted(Drilling(robot, tool, positions[0].hole), bound=BOX)
 
 
 class TestEveryMethod:
