@@ -103,12 +103,12 @@ def test_sections_that_the_code_cites_exist():
     }
     cited = {
         number
-        for folder in ("tests", "benchmarks")
+        for folder in ("src", "tests", "benchmarks")
         for source in (ROOT / folder).rglob("*.py")
         for group in re.findall(r"[Tt]heory (§[\d.]+(?:(?:, | and )§[\d.]+)*)", source.read_text(encoding="utf-8"))
         for number in re.findall(r"\d+(?:\.\d+)?", group)
     }
-    assert {"1", "5", "7"} <= cited
+    assert {"1", "2", "3", "4", "5", "6", "7", "8.4"} <= cited
     assert cited <= sections
 
 
@@ -116,9 +116,9 @@ def test_pages_that_other_files_name_exist():
     """Names of pages in the code, the README and so on: `docs/howto/maps.md`."""
     named = {
         (str(source.relative_to(ROOT)), name)
-        for pattern in ("benchmarks/**/*.py", "examples/**/*.py", "benchmarks/*.md", "*.md", "Makefile")
+        for pattern in ("src/**/*.py", "benchmarks/**/*.py", "examples/**/*.py", "benchmarks/*.md", "*.md", "Makefile")
         for source in ROOT.glob(pattern)
         for name in re.findall(r"docs/[\w./-]+\.(?:md|png|json|svg)", source.read_text(encoding="utf-8"))
     }
-    assert len(named) > 10
+    assert len(named) > 20
     assert {(source, name) for source, name in named if not (ROOT / name).is_file()} == set()

@@ -1,4 +1,4 @@
-"""The order of motions, against the rules of theory §6 written out one by one, on made-up scores."""
+"""The order of motions, against the rules of theory §3.1 written out one by one, on made-up scores."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def run(
     there and ends with the same bytes. On a finished map it looks for damage, and mends it.
 
     Args:
-        map: The map file (YAML): robot, tool, targets, directions, quantity (docs/maps.md).
+        map: The map file (YAML): robot, tool, targets, directions, quantity (docs/howto/maps.md).
         output: Where to write the map: a folder of zarr.
         workers: Processes to run it on; by default all cores where it is worth it. The map is the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.

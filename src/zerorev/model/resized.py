@@ -1,4 +1,4 @@
-"""The same drilling at another size: all lengths times a factor, all rates per length divided by it (theory §6)."""
+"""The same drilling at another size: all lengths times a factor, all rates per length divided by it (theory §3.3)."""
 
 from __future__ import annotations
 

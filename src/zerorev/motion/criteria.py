@@ -2,7 +2,7 @@
 
 `measure` takes what the criteria need of an evaluated motion, in its own units; a criterion turns one of these figures
 into a cost that is about 0 for the best and about 1 for a poor motion, so that weights mean the same for all of them.
-Reversals and the motion threshold are not weighed against any of this: they come first (theory §6). The thesis weighs
+Reversals and the motion threshold are not weighed against any of this: they come first (theory §3.1). The thesis weighs
 them by 6/7 against 1/7 (eq. 4.7), which comes to the same, and `thesis_objective` is that sum.
 """
 

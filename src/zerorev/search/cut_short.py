@@ -42,7 +42,7 @@ def cut_short(profile: Profile, depth: float) -> Profile:
 
 
 def legs_swapped(profile: Profile) -> Profile:
-    """The same motion run backwards: the mirror law gives it the same reversals and travel (theory §7)."""
+    """The same motion run backwards: the mirror law gives it the same reversals and travel (theory §2.1)."""
     return Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy())
 
 

@@ -1,7 +1,7 @@
 """What the critical rates foretell before any search: the least twist and the deepest stroke of a hole (theory §2).
 
 Everything here is told from the target line alone: at each spin the two rate fields and their derivatives up to second
-order are known, no leg is followed. How good the figures are is measured in docs/prediction.md.
+order are known, no leg is followed. How good the figures are is measured in docs/explanation/prediction.md.
 """
 
 from __future__ import annotations
@@ -66,7 +66,9 @@ class Prediction:
 
 
 def predict(drilling: Drilling, settings: Settings | None = None, *, root: Root | None = None) -> Prediction:
-    """Foretell the least twist of a hole at its depth, and its deepest stroke, without a search (docs/prediction.md).
+    """Predict the least twist of a hole at its depth, and its deepest stroke, without a search.
+
+    How good the figures are is measured in docs/explanation/prediction.md.
 
     Args:
         drilling: robot, tool and hole: what to drill; its `branch`, if any, is the only one looked at.

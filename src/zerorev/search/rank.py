@@ -1,4 +1,4 @@
-"""The one order of motions, and the one noun for a motion that was found (theory §6).
+"""The one order of motions, and the one noun for a motion that was found (theory §3.1).
 
 Every search, the plan, the maps and the app compare motions here and nowhere else, so that no two of them can disagree:
 fewest reversals (weighted), then the motion threshold, then the objective, then what tells equal motions apart.

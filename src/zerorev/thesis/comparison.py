@@ -22,7 +22,7 @@ PSI = ("psi_start_deg", "psi_target_deg", "psi_end_deg")
 
 
 def comparison_data(comparison: Comparison) -> dict[str, Any]:
-    """The answer as plain data, in the form of a comparison file (docs/compare.md)."""
+    """The answer as plain data, in the form of a comparison file (docs/thesis/compare.md)."""
     summaries = comparison.summaries()
     data = {
         "format": "zerorev.comparison/1",

@@ -26,7 +26,7 @@ FRAME_ANGLE = float(np.deg2rad(3e-6))  # six decimals
 FEED = 1e-6  # [m/s]: six decimals
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
 AS_WRITTEN = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
-"""The tool frame of a program, X along the plunge, in the tcp frame (docs/program.md)."""
+"""The tool frame of a program, X along the plunge, in the tcp frame (docs/howto/program.md)."""
 
 
 class Places(NamedTuple):

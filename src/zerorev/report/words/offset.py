@@ -21,7 +21,7 @@ HOLES_SHOWN = 8
 
 
 def offset_data(job: Job, curve: OffsetCurve, least: LeastOffset | None) -> dict[str, Any]:
-    """The answer as plain data, in the form of an offset file (docs/tool_offset.md)."""
+    """The answer as plain data, in the form of an offset file (docs/howto/tool_offset.md)."""
     offset, angle = offset_of(job.robot, job.tool)
     data = {
         "format": "zerorev.offset/1",

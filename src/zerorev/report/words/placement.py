@@ -39,7 +39,7 @@ def robot_instead(T_base_part: Array, place: Array) -> Array:
 
 
 def placement_data(job: Job, freedom: Freedom, found: Placement) -> dict[str, Any]:
-    """The answer as plain data, in the form of a placement file (docs/placement.md)."""
+    """The answer as plain data, in the form of a placement file (docs/howto/place_a_part.md)."""
     granted = {NAMES[axis]: in_unit(axis, np.array(getattr(freedom, axis))) for axis in AXES}
     best = {
         "shift_mm": mm(found.place[:3]),
@@ -154,7 +154,7 @@ def _signed(margin: float) -> Text:
 
 
 def share_data(jobs: list[Job], shares: Shares) -> dict[str, Any]:
-    """Who takes which hole, as plain data, in the form of a share file (docs/placement.md)."""
+    """Who takes which hole, as plain data, in the form of a share file (docs/howto/place_a_part.md)."""
     robots = [
         {"job": job.name, "robot": robot_data(job.robot), "tool": tool_data(job.tool),
          "part_frame": frame_text(job.T_base_part), "holes": int((shares.taken_by == r).sum())}

@@ -1,4 +1,4 @@
-"""The tree of a branch and bound as data, for a check that shares no code with it (theory §6)."""
+"""The tree of a branch and bound as data, for a check that shares no code with it (theory §8.4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The errata of the thesis, each shown by a number that is computed here (theory §6, docs/theory.md §11)."""
+"""The errata of the thesis, each shown by a number that is computed here (theory §6, docs/thesis/index.md)."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ class Segment(NamedTuple):
         return self.radius.min(self.length / 2).min(behind.length / 2)
 
     def blend(self, behind: Segment, cut: arb) -> Arc:
-        """The parabola that replaces so much of the end of this move and of the begin of the next (theory §9).
+        """The parabola that replaces so much of the end of this move and of the begin of the next (theory §5.1).
 
         Of the tool's two turns the first dies away as the second sets in, both quadratically.
         """

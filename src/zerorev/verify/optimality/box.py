@@ -1,4 +1,4 @@
-"""A box of legs at a stand-off, in ball arithmetic: the arm at its centre, and anywhere in it (theory §6).
+"""A box of legs at a stand-off, in ball arithmetic: the arm at its centre, and anywhere in it (theory §8.4).
 
 A box is an interval of spins at the target and an interval of slopes, on one posture. At a given stand-off all of it is
 a function of the spin there.

@@ -1,4 +1,4 @@
-"""What a plan states of its optimality, and the logged trees that it follows from (theory §6)."""
+"""What a plan states of its optimality, and the logged trees that it follows from (theory §8.4)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What every leg of a box has in common, in ball arithmetic: how often its joints turn, how far they travel.
 
-A box is examined at stand-offs: what no leg of it does at one of them, no leg of it does (theory §6). Written apart
+A box is examined at stand-offs: what no leg of it does at one of them, no leg of it does (theory §8.4). Written apart
 from the search that it checks.
 """
 

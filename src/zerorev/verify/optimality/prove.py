@@ -3,7 +3,7 @@
 The search's tree comes as data. That nothing is missing from it is a comparison of numbers (`optimality_tree`). That no
 leg of a dead box keeps the rules, and that two legs of boxes which were left out reach the claimed value, is shown
 again here (`optimality_legs`), by other formulas and another arithmetic. Where balls are too wide, a box is cut: if all
-its parts are dead, it is (theory §6).
+its parts are dead, it is (theory §8.4).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""How far the joints of a box of legs travel at the least, and with which turns they fit their limits (theory §6)."""
+"""How far the joints of a box of legs travel at the least, and with which turns they fit their limits (theory §8.4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a logged tree leaves nothing out: exact comparisons of its own numbers, without any geometry (theory §6)."""
+"""Whether a logged tree leaves nothing out: exact comparisons of its own numbers, without geometry (theory §8.4)."""
 
 from __future__ import annotations
 
