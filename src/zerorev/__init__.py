@@ -1,7 +1,8 @@
 """Robotic drilling without joint reversals: robot, tool and holes in; the best motion and its proof out.
 
 The names below are the public ones. They are imported when first used, so that `import zerorev` is quick; the kernels
-behind `plan` are compiled on first use, which says so once, and cached.
+behind `plan` are compiled on first use, which says so once, and cached. `zerorev.figures` is a module of its own, since
+it needs matplotlib.
 """
 
 from __future__ import annotations
@@ -9,7 +10,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from zerorev.model import shown
+
 if TYPE_CHECKING:
+    from zerorev import figures as figures
     from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
     from zerorev.files.io import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
     from zerorev.model.hole import Hole
@@ -84,6 +88,8 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     """Import a public name from its home when it is first asked for (PEP 562)."""
+    if name == "figures":
+        return import_module("zerorev.figures")
     for home, names in _HOMES.items():
         if name in names:
             value = getattr(import_module(f"zerorev.{home}"), name)
@@ -93,4 +99,13 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted([*__all__, "figures"])
+
+
+def _in_notebook(answer: Any) -> str:
+    from zerorev.report.notebook import html_of  # only when something is shown
+
+    return html_of(answer)
+
+
+shown.register(_in_notebook)

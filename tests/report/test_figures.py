@@ -261,7 +261,7 @@ class TestWriteFigures:
         robot = read_robot(robot_name)
         hole = Hole("h", np.array([0.6, 0.2, 0.8]), np.array([1.0, 0, 0]), 0.02)
         profile = Profile.straight(0.02, *np.deg2rad([10, -5, -30]))
-        answers = [_evaluated(Drilling(robot, tool, hole), profile, branch) for branch in range(8)]
+        answers = [_evaluated(robot, tool, hole, profile, branch) for branch in range(8)]
         plan = Plan(robot, tool, Settings(), tuple([found for found in answers if found][:1]))
         assert len(write_figures(plan, tmp_path)) == 3
 

@@ -47,6 +47,6 @@ def compare_maps(first: Path, second: Path, /, *, output: Output = None, figure:
         from zerorev.report.figures.map_difference import map_difference
         from zerorev.report.figures.style import png
 
-        write_bytes(figure, png(map_difference(apart, names)))
+        write_bytes(figure, png(map_difference(maps[0], maps[1], names)))
         terminal.say(f"figure written to {figure}")
     return FINE

@@ -15,6 +15,7 @@ from zerorev.model.job import Settings
 from zerorev.model.measures import Measures, V
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.shown import Shown
 from zerorev.model.stated import Choice, Switch, Whole, attributes
 from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
 from zerorev.model.tool import Tool
@@ -229,7 +230,7 @@ class Optimality:
 
 
 @dataclass(frozen=True)
-class HolePlan:
+class HolePlan(Shown):
     """One hole's answer.
 
     Attributes:
@@ -270,7 +271,7 @@ class HolePlan:
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Shown):
     """A job's answer, hole by hole.
 
     Attributes:

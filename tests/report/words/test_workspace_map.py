@@ -18,9 +18,9 @@ from zerorev.maps.answers import cells_of, difference
 from zerorev.maps.planes import planes_of
 from zerorev.report.figures import style
 from zerorev.report.figures.cell import direction_rose
-from zerorev.report.figures.map_difference import map_difference
+from zerorev.report.figures.map_difference import difference_figure
 from zerorev.report.figures.workspace import map_figures, robot_at_home
-from zerorev.report.figures.workspace_map import map_planes, map_surface, map_views
+from zerorev.report.figures.workspace_map import planes_figure, surface_figure, views_figure
 from zerorev.report.figures.workspace_page import workspace_page
 from zerorev.report.words.workspace_map import difference_csv, difference_lines, show_lines
 
@@ -59,7 +59,7 @@ def test_lines_say_range_best_and_symmetry(found):
 
 def test_planes_have_the_colours_of_their_cells_and_units(found):
     planes = planes_of(cells_of(found))
-    figure = map_planes(planes, "robot")
+    figure = planes_figure(planes, "robot")
     for axes, plane in zip(figure.axes, planes, strict=False):
         assert axes.xaxis_inverted()  # seen from behind the robot, +Y is left
         (mesh,) = axes.collections
@@ -69,14 +69,14 @@ def test_planes_have_the_colours_of_their_cells_and_units(found):
     assert "[mm]" in figure.axes[0].get_xlabel() + figure.axes[-1].get_ylabel()
     limits = {tuple(axes.collections[0].get_clim()) for axes in figure.axes[:3]}
     assert len(limits) == 1
-    own = map_planes(planes, "robot", alike=False)
+    own = planes_figure(planes, "robot", alike=False)
     assert len({tuple(axes.collections[0].get_clim()) for axes in own.axes[:3]}) == 3
 
 
 def test_reversals_have_their_colours(robot, tool):
     found = made_map(robot, tool, AXES, CONE[:1], lambda x, y, z, _: (y + 200) // 100 * 2, variable="reversals")
     plane = planes_of(cells_of(found))[0]
-    mesh = map_planes([plane], "robot").axes[0].collections[0]
+    mesh = planes_figure([plane], "robot").axes[0].collections[0]
     colours = mesh.cmap(mesh.norm(mesh.get_array()))[..., :3]
     for (row, column), count in np.ndenumerate(plane.value):
         assert colours[row, column] == pytest.approx(to_rgb(style.REVERSAL_COLOURS[min(int(count), 6)]), abs=0.01)
@@ -84,7 +84,7 @@ def test_reversals_have_their_colours(robot, tool):
 
 def test_a_small_plane_has_its_numbers(found):
     plane = planes_of(cells_of(found))[0]
-    told = {text.xy: text.get_text() for text in map_planes([plane], "robot").axes[0].texts}
+    told = {text.xy: text.get_text() for text in planes_figure([plane], "robot").axes[0].texts}
     for (row, column), value in np.ndenumerate(plane.value):
         assert told[plane.width[column], plane.height[row]] == f"{value:.1f}"
 
@@ -92,7 +92,7 @@ def test_a_small_plane_has_its_numbers(found):
 def test_surface_lies_as_deep_as_the_strokes(found):
     robot = robot_at_home(found)
     plane = planes_of(cells_of(found))[1]
-    axes = map_surface(plane, "robot", robot).axes[0]
+    axes = surface_figure(plane, "robot", robot).axes[0]
     corners = np.concatenate(axes.collections[0]._faces)
     for (row, column), value in np.ndenumerate(plane.value):
         wanted = (plane.at + value, plane.width[column], plane.height[row])
@@ -102,7 +102,7 @@ def test_surface_lies_as_deep_as_the_strokes(found):
 
 def test_views_show_every_face_from_below_and_from_the_side(found):
     planes = planes_of(cells_of(found))
-    figure = map_views(planes, "robot", robot_at_home(found))
+    figure = views_figure(planes, "robot", robot_at_home(found))
     below, side = figure.axes[:2]
     for axes, height in ((below, "Y"), (side, "Z")):
         (faces,) = axes.collections
@@ -166,7 +166,7 @@ def test_difference_in_lines_file_and_picture(robot, tool, found):
         assert row[6] == ("" if np.isnan(value) else repr(float(value)))
         if row[8]:
             assert float(row[8]) == pytest.approx(5 if y > 0 else -1)
-    panels = map_difference(apart, ("a", "b")).axes[:3]
+    panels = difference_figure(apart, ("a", "b")).axes[:3]
     change = panels[2].collections[0]
     assert change.get_clim() == (-5, 5)
     first, second = (np.asarray(axes.collections[0].get_array()) for axes in panels[:2])

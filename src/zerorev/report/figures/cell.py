@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D
 
@@ -24,7 +25,11 @@ NEAR = 0.9  # of the usual distance between two directions: so far does each spe
 
 
 def robot_in_cell(
-    cells: Field, subtitle: str, robots: Sequence[tuple[str, Array]], named: Sequence[str] = ()
+    cells: Field,
+    subtitle: str,
+    robots: Sequence[tuple[str, Array]],
+    named: Sequence[str] = (),
+    ax: Axes | None = None,
 ) -> Figure:
     """The targets of a map in the cell, coloured by their best direction, and the robot as a few lines.
 
@@ -33,10 +38,11 @@ def robot_in_cell(
         subtitle: of the map.
         robots: what each posture is called, and its places along the arm [mm], shape (P, 3); the first is at home.
         named: names of the targets, one a target, or none; where there are many they are left out.
+        ax: to draw into, in 3D; None: a figure with a heading.
     """
-    figure = style.headed_figure("Targets in the robot's cell", subtitle, 6.6)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    figure, axes = style.one_axes(ax, "Targets in the robot's cell", subtitle, 6.6, "3d")
     assert isinstance(axes, Axes3D)
+    axes.computed_zorder = False
     every = -(-len(cells.target) // MOST_TARGETS)
     target, best = cells.target[::every], cells.best[::every]
     cmap, norm = colours_of(cells.quantity, best)
@@ -52,11 +58,11 @@ def robot_in_cell(
     dress_cell(axes, np.vstack([target, *(places for _, places in robots), np.zeros((1, 3))]))
     value_bar(figure, cells.quantity, cmap, norm, axes, shrink=0.6, pad=0.08)
     lines = [line for line in axes.get_lines() if not str(line.get_label()).startswith("_")]
-    grey_legend(figure, cells.quantity, lines)
+    grey_legend(figure, cells.quantity, lines, ax)
     return figure
 
 
-def direction_rose(cells: Field, row: int, subtitle: str) -> Figure:
+def direction_rose(cells: Field, row: int, subtitle: str, ax: Axes | None = None) -> Figure:
     """What a target allows by direction of the drill, on a disc that keeps areas.
 
     In the middle is the mean of the directions, or +X where they are all round; the distance from there is the angle to
@@ -66,11 +72,12 @@ def direction_rose(cells: Field, row: int, subtitle: str) -> Figure:
         cells: of a map with several directions.
         row: of the target.
         subtitle: of the map.
+        ax: to draw into; None: a figure with a heading.
     """
     place = ", ".join(f"{value + 0.0:g}" for value in cells.target[row]).replace("-", "−")
     quantity, value = cells.quantity, cells.value[row]
-    figure = style.headed_figure(f"{capital(quantity.title)} at ({place}) mm, by direction", subtitle, 6.6)
-    axes = figure.add_subplot()
+    title = f"{capital(quantity.title)} at ({place}) mm, by direction"
+    figure, axes = style.one_axes(ax, title, subtitle, 6.6)
     middle, right, up = _frame(cells.direction)
     cmap, norm = colours_of(quantity, cells.value)
     angles = np.degrees(np.arccos(np.clip(cells.direction @ middle, -1.0, 1.0)))
@@ -105,7 +112,7 @@ def direction_rose(cells: Field, row: int, subtitle: str) -> Figure:
     axes.set_axis_off()
     axes.set_title(f"drill along {named_direction(middle)} in the middle", size=9.5, color=style.INK)
     value_bar(figure, quantity, cmap, norm, axes, shrink=0.7, pad=0.02)
-    grey_legend(figure, quantity, [])
+    grey_legend(figure, quantity, ax=ax)
     return figure
 
 

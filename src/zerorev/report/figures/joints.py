@@ -40,16 +40,17 @@ class Curve(NamedTuple):
         return "?" if self.events is None else str(len(self.reversals(joint)))
 
 
-def joint_angles(plan: Plan, hole: HolePlan) -> Figure:
-    """Six small pictures, one a joint: its angle [deg] against path distance [mm], planned and with constant spin.
+def joint_angles(plan: Plan, hole: HolePlan | str | None = None) -> Figure:
+    """Six small pictures, one per joint: its angle [deg] against path distance [mm], planned and with constant spin.
 
     Args:
         plan: whose robot and tool move.
-        hole: with a motion.
+        hole: of the plan, or its id; None: the first that has a motion.
 
     Raises:
-        InputError: the hole has no motion.
+        InputError: there is no such hole, or it has no motion.
     """
+    hole = style.hole_of(plan, hole)
     motion = style.motion_of(hole)
     figure = style.new_figure("Joint angles along the drilling motion", plan, hole, height=5.6)
     grid = figure.subplots(2, 3, sharex=True)

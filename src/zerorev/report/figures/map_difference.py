@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from zerorev.maps.answers import Difference
+from zerorev.maps.answers import Difference, cells_of, difference
 from zerorev.maps.planes import planes_of
 from zerorev.report.figures import style
 from zerorev.report.figures.cell import named_direction
@@ -21,12 +22,29 @@ from zerorev.report.figures.workspace_map import (
     write_numbers,
 )
 
-__all__ = ["map_difference"]
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+__all__ = ["difference_figure", "map_difference"]
 
 CHANGE_MAP = "PuOr"  # two hues that stay apart to the colour-blind, white where nothing changes
 
 
-def map_difference(apart: Difference, names: tuple[str, str]) -> Figure:
+def map_difference(first: Dataset, second: Dataset, names: tuple[str, str] = ("first", "second")) -> Figure:
+    """Two workspace maps on their common cells: the plane that changes most in both, and the second less the first.
+
+    Args:
+        first: a workspace map on a grid.
+        second: another of the same quantity.
+        names: what they are called.
+
+    Raises:
+        InputError: they hold different quantities, have no cell in common, or their common targets are not a grid.
+    """
+    return difference_figure(difference(cells_of(first), cells_of(second)), names)
+
+
+def difference_figure(apart: Difference, names: tuple[str, str]) -> Figure:
     """The plane with the greatest change in two maps, in one scale, and the second less the first.
 
     Args:

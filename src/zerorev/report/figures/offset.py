@@ -27,30 +27,36 @@ TOO_LITTLE = "#a84a00"
 OWN: dict[str, Any] = {"marker": "^", "linestyle": "none", "color": style.INK, "markersize": 8, "zorder": 6}
 
 
-def tool_offset(job: Job, curve: OffsetCurve, least: LeastOffset | None) -> Figure:
+def tool_offset(job: Job, curve: OffsetCurve, least: LeastOffset | None = None, *, ax: Axes | None = None) -> Figure:
     """Deepest stroke [mm] of each hole against e [mm] at one angle; with three angles or more, the margin over both.
 
     Args:
         job: whose robot, tool and holes they are.
         curve: what is drawn.
         least: whose angle is drawn and which is marked; None for the angle with the greatest margin.
+        ax: to draw the strokes at one angle into; None: a figure with a heading.
+
+    Raises:
+        InputError: the axes are not plane ones.
     """
     robot = f"{job.robot.manufacturer} {job.robot.model}".strip() or job.robot.name
     whole_map = len(curve.angles) >= ANGLES_FOR_A_MAP and len(curve.offsets) > 1
     title = f"Deepest stroke over the tool's offset: {robot}, {job.tool.name}"
-    figure = style.headed_figure(title, how_deep(job.settings), 4.6)
-    if whole_map:
+    if ax is not None or not whole_map:
+        figure, curves = style.one_axes(ax, title, how_deep(job.settings), 4.6)
+    else:
+        figure = style.headed_figure(title, how_deep(job.settings), 4.6)
         grid = figure.add_gridspec(1, 2, width_ratios=(1.15, 1))
         curves, polar = figure.add_subplot(grid[0]), figure.add_subplot(grid[1], projection="polar")
         assert isinstance(polar, PolarAxes)
         _map(figure, polar, curve, least, offset_of(job.robot, job.tool))
-    else:
-        curves = figure.add_subplot()
-    _curves(figure, curves, job, curve, least)
+    handles = _curves(curves, job, curve, least)
+    style.legend_below(figure, handles, 5, ax)
     return figure
 
 
-def _curves(figure: Figure, axes: Axes, job: Job, curve: OffsetCurve, least: LeastOffset | None) -> None:
+def _curves(axes: Axes, job: Job, curve: OffsetCurve, least: LeastOffset | None) -> list[Line2D]:
+    """Draw one angle; what the legend explains."""
     best = int(np.argmax(curve.margin.max(axis=0)))
     j = best if least is None else int(np.argmin(np.abs(curve.angles - least.angle)))
     e, deepest, needed = curve.offsets * 1e3, curve.deepest[:, j] * 1e3, curve.needed * 1e3
@@ -83,7 +89,7 @@ def _curves(figure: Figure, axes: Axes, job: Job, curve: OffsetCurve, least: Lea
         handles.append(Line2D([], [], label=f"the tool as it is: {own * 1e3:.4g} mm", **OWN))
     axes.set_xlim(e[0], e[-1] if len(e) > 1 else e[0] + 1)
     axes.set_ylim(0, 1.05 * max(deepest.max(), needed.max()))
-    style.legend_below(figure, handles, columns=5)
+    return handles
 
 
 def _worst(axes: Axes, job: Job, curve: OffsetCurve, j: int) -> list[Line2D]:

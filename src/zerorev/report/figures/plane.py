@@ -36,7 +36,7 @@ LIMITED: dict[str, Any] = {"facecolor": "#faf0d7", "edgecolor": "#c9a24a", "hatc
 LEG = {"color": "black", "linewidth": 2.8, "path_effects": [withStroke(linewidth=5.2, foreground="white")], "zorder": 6}
 
 
-def twist_plane(plan: Plan, hole: HolePlan) -> Figure:
+def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | None = None) -> Figure:
     """Spin [deg] over the path from start to target and back out, the field on both sides the same.
 
     Behind the motion: the twist spread [deg/mm], which says where zero reversals are cheap; where the branch does not
@@ -44,15 +44,16 @@ def twist_plane(plan: Plan, hole: HolePlan) -> Figure:
 
     Args:
         plan: whose robot and tool move.
-        hole: with a motion.
+        hole: of the plan, or its id; None: the first that has a motion.
+        ax: to draw into; None: a figure with a heading.
 
     Raises:
-        InputError: the hole has no motion.
+        InputError: there is no such hole, or it has no motion.
     """
+    hole = style.hole_of(plan, hole)
     motion = style.motion_of(hole)
     profile = motion.profile
-    figure = style.new_figure("Twist plane", plan, hole, height=7.2)
-    axes = figure.subplots()
+    figure, axes = style.one_axes(ax, "Twist plane", style.hole_heading(plan, hole), 7.2)
     corner = profile.standoff[profile.corner]
     low, high = _spin_range(profile.psi)
     patch = field(
@@ -75,7 +76,7 @@ def twist_plane(plan: Plan, hole: HolePlan) -> Figure:
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_visible(False)
-    style.legend_below(figure, _handles(plan, hole, patch, crossed, limited), columns=4)
+    style.legend_below(figure, _handles(plan, hole, patch, crossed, limited), 4, ax)
     return figure
 
 

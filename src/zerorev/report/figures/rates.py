@@ -23,7 +23,7 @@ SPIN_STEP = np.deg2rad(0.1)
 BRACKET, BRACKETED = "#dcdcdc", "#3f3f3f"
 
 
-def critical_rates(plan: Plan, hole: HolePlan) -> Figure:
+def critical_rates(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | None = None) -> Figure:
     """The six critical twist rates [deg/mm] at the target against its spin [deg], on the chosen branch.
 
     The slopes of the two legs are the bracket; a joint whose critical rate lies outside it at the chosen spin reverses
@@ -31,17 +31,19 @@ def critical_rates(plan: Plan, hole: HolePlan) -> Figure:
 
     Args:
         plan: whose robot and tool move.
-        hole: with a motion.
+        hole: of the plan, or its id; None: the first that has a motion.
+        ax: to draw into; None: a figure with a heading.
 
     Raises:
-        InputError: the hole has no motion.
+        InputError: there is no such hole, or it has no motion.
     """
+    hole = style.hole_of(plan, hole)
     motion = style.motion_of(hole)
     rates = bracket(Drilling(plan.robot, plan.tool, hole.hole), motion.profile, motion.branch, SPIN_STEP)
     chosen, slopes, here = rates.chosen, rates.slopes, rates.here
 
-    figure = style.new_figure("Critical twist rates at the target", plan, hole, height=5.6)
-    axes = figure.subplots()
+    heading = style.hole_heading(plan, hole)
+    figure, axes = style.one_axes(ax, "Critical twist rates at the target", heading, 5.6)
     style.bare_axes(axes)
     axes.set_xlim(*np.rad2deg(rates.reached))
     axes.set_ylim(*rates.rates)
@@ -58,7 +60,7 @@ def critical_rates(plan: Plan, hole: HolePlan) -> Figure:
     _name_slopes(axes, slopes)
     axes.xaxis.set_major_locator(MaxNLocator(10, steps=[1, 2, 3, 4.5, 6, 9, 10]))
     style.label(axes, x="spin at the target ψ [deg]", y="critical twist rate dψ/ds [deg/mm]")
-    style.legend_below(figure, _handles(plan, rates), columns=4)
+    style.legend_below(figure, _handles(plan, rates), 4, ax)
     return figure
 
 

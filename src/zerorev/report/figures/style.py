@@ -2,6 +2,9 @@
 
 Only matplotlib's object interface is used, and every size is given to the artist itself, so that drawing neither reads
 nor leaves behind any global state.
+
+A figure with one axes may be drawn into axes of the caller's own: then it has no heading, and its legend lies below
+those axes.
 """
 
 from __future__ import annotations
@@ -9,7 +12,7 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -46,11 +49,14 @@ __all__ = [
     "bare_axes",
     "deg_per_mm",
     "headed_figure",
+    "hole_heading",
+    "hole_of",
     "label",
     "legend_below",
     "motion_of",
     "new_figure",
     "no_effect",
+    "one_axes",
     "png",
     "signed",
     "spread_out",
@@ -60,7 +66,40 @@ CASING: list[AbstractPathEffect] = [withStroke(linewidth=2.6, foreground="white"
 
 WIDTH, DPI = 8.0, 150  # inches and dots per inch: 1200 px
 HEADER = 0.62  # inches
+BELOW_AXES = -0.16  # of their height: clear of the ticks and the label
 TITLE_LENGTH = 48  # characters of a hole's id in a heading
+IDS_NAMED = 8
+
+
+class _Headed(Figure):
+    """A figure that a notebook shows without pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        return png(self)
+
+
+def hole_of(plan: Plan, hole: HolePlan | str | None) -> HolePlan:
+    """The hole that is meant, and that has a motion.
+
+    Args:
+        plan: with the hole.
+        hole: one of its holes, or the id of one; None: the first that has a motion.
+
+    Raises:
+        InputError: there is no such hole, or it has no motion to draw.
+    """
+    if isinstance(hole, str):
+        found = next((each for each in plan.holes if each.hole.id == hole), None)
+    elif hole is None:
+        found = next((each for each in plan.holes if each.motion is not None), None)
+    else:
+        found = hole
+    if found is None:
+        ids = ", ".join(each.hole.id for each in plan.holes[:IDS_NAMED] if each.motion is not None)
+        what = "has no hole with a motion" if hole is None else f"has no hole '{hole}'"
+        raise InputError(what, where=f"plan {plan.name}", accepted=ids or "a plan with a motion")
+    motion_of(found)
+    return found
 
 
 def motion_of(hole: HolePlan) -> Motion:
@@ -83,7 +122,7 @@ def new_figure(title: str, plan: Plan, hole: HolePlan, height: float) -> Figure:
         hole: which is named.
         height: of the figure [inches].
     """
-    return headed_figure(title, _subtitle(plan, hole), height)
+    return headed_figure(title, hole_heading(plan, hole), height)
 
 
 def headed_figure(title: str, subtitle: str, height: float) -> Figure:
@@ -94,7 +133,7 @@ def headed_figure(title: str, subtitle: str, height: float) -> Figure:
         subtitle: of what.
         height: of the figure [inches].
     """
-    figure = Figure(figsize=(WIDTH, height), dpi=DPI, facecolor="white")
+    figure = _Headed(figsize=(WIDTH, height), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     below_heading = (0.005, 0.01, 0.99, 1 - HEADER / height - 0.01)
     figure.set_layout_engine("constrained", rect=below_heading, h_pad=0.05, w_pad=0.05)
@@ -105,7 +144,32 @@ def headed_figure(title: str, subtitle: str, height: float) -> Figure:
     return figure
 
 
-def _subtitle(plan: Plan, hole: HolePlan) -> str:
+def one_axes(
+    ax: Axes | None, title: str, subtitle: str, height: float, projection: Literal["3d"] | None = None
+) -> tuple[Figure, Axes]:
+    """The given axes and their figure, or new axes in a figure with a heading.
+
+    Args:
+        ax: of the caller's own, or None.
+        title: what a new figure shows.
+        subtitle: of what.
+        height: of a new figure [inches].
+        projection: that the axes need; None: plane ones.
+
+    Raises:
+        InputError: the given axes have another projection.
+    """
+    if ax is None:
+        figure = headed_figure(title, subtitle, height)
+        return figure, figure.add_subplot(projection=projection)
+    needed = projection or "rectilinear"
+    if ax.name != needed:
+        raise InputError(f"has the projection '{ax.name}'", where="ax", accepted=f"axes with projection='{needed}'")
+    return ax.figure.figure, ax  # also where they lie in a part of a figure
+
+
+def hole_heading(plan: Plan, hole: HolePlan) -> str:
+    """Robot, hole, branch and reversals, in a line."""
     robot = f"{plan.robot.manufacturer} {plan.robot.model}".strip() or plan.robot.name
     name = hole.hole.id if len(hole.hole.id) <= TITLE_LENGTH else f"{hole.hole.id[: TITLE_LENGTH - 1]}…"
     reversals = "?" if hole.score is None else str(hole.score.reversals)
@@ -129,12 +193,16 @@ def label(axes: Axes, x: str = "", y: str = "") -> None:
     axes.set_ylabel(y, size=9.5, color=INK)
 
 
-def legend_below(figure: Figure, handles: Sequence[Any], columns: int) -> None:
-    """One legend for the whole figure, under it."""
-    legend = figure.legend(
-        handles=list(handles), loc="outside lower center", ncols=columns, fontsize=8.5, frameon=False,
-        handlelength=2.4, columnspacing=1.5, labelcolor=INK,
-    )  # fmt: skip
+def legend_below(figure: Figure, handles: Sequence[Any], columns: int, ax: Axes | None = None) -> None:
+    """One legend for the whole figure, under it; or under axes of the caller's own."""
+    look: dict[str, Any] = {
+        "handles": list(handles), "fontsize": 8.5, "frameon": False, "handlelength": 2.4, "columnspacing": 1.5,
+        "labelcolor": INK,
+    }  # fmt: skip
+    if ax is None:
+        legend = figure.legend(loc="outside lower center", ncols=columns, **look)
+    else:
+        legend = ax.legend(loc="upper center", bbox_to_anchor=(0.5, BELOW_AXES), ncols=min(columns, 2), **look)
     for text in legend.get_texts():
         text.set_parse_math(False)
 

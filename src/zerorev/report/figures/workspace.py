@@ -7,25 +7,35 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from zerorev.errors import InputError
 from zerorev.files.output import make_folder, write_bytes
 from zerorev.maps.answers import Cells, best_cells, cells_of
-from zerorev.maps.planes import Across, is_grid, planes_of
+from zerorev.maps.planes import Across, Plane, is_grid, planes_of
 from zerorev.maps.replan import question_of
 from zerorev.model._arrays import Array
 from zerorev.motion.drilling import Drilling
 from zerorev.report.figures.cell import direction_rose, named_direction, robot_in_cell
 from zerorev.report.figures.style import png
-from zerorev.report.figures.workspace_map import best_plane, map_planes, map_surface, map_views
+from zerorev.report.figures.workspace_map import best_plane, planes_figure, surface_figure, views_figure
 from zerorev.report.scene.skeleton import home, joints_at, skeleton
 from zerorev.report.words.workspace_map import heading
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-__all__ = ["map_figures", "robot_at_home", "write_map_figures"]
+__all__ = [
+    "map_cell",
+    "map_figures",
+    "map_planes",
+    "map_rose",
+    "map_surface",
+    "map_views",
+    "robot_at_home",
+    "write_map_figures",
+]
 
 
 def write_map_figures(
@@ -56,7 +66,7 @@ def write_map_figures(
 def map_figures(
     found: Dataset, *, direction: int = 0, across: Across | None = None, at: Sequence[float] | None = None
 ) -> dict[str, Figure]:
-    """The pictures of a map by name: what there is to be seen in it, and no more.
+    """The figures of a map by name: those that there is something to see in.
 
     Args:
         found: a workspace map.
@@ -67,26 +77,122 @@ def map_figures(
     Raises:
         InputError: `at` is no target of the map.
     """
-    cells, subtitle, robot = cells_of(found), heading(found), robot_at_home(found)
+    cells = cells_of(found)
+    _row_of(cells, at)
     figures: dict[str, Figure] = {}
-    row = _row_of(cells, at)
     if is_grid(cells):
-        planes = planes_of(cells, direction, across)
-        drilled = subtitle
-        if len(cells.direction) > 1:
-            drilled += f"   |   drilled along {named_direction(cells.direction[direction])}"
-        figures["planes"] = map_planes(planes, drilled)
-        if min(planes[0].value.shape) > 1:
-            figures["surface"] = map_surface(best_plane(planes), drilled, robot)
-            figures["views"] = map_views(planes, drilled, robot)
-    robots = [("robot at home", robot)]
+        figures["planes"] = map_planes(found, direction=direction, across=across)
+        if min(planes_of(cells, direction, across)[0].value.shape) > 1:
+            figures["surface"] = map_surface(found, direction=direction, across=across)
+            figures["views"] = map_views(found, direction=direction, across=across)
+    figures["cell"] = map_cell(found)
+    if len(cells.direction) > 1:
+        figures["rose"] = map_rose(found, at)
+    return figures
+
+
+def map_planes(found: Dataset, *, direction: int = 0, across: Across | None = None) -> Figure:
+    """The planes of a workspace map side by side, each as it is seen along the drill (thesis Fig. 21).
+
+    Args:
+        found: a workspace map on a grid.
+        direction: number of the direction of the drill, of those that the map has.
+        across: the axis that the planes stand across; None: the one that the drill is nearest to.
+
+    Raises:
+        InputError: the map is not on a grid.
+    """
+    return planes_figure(*_planes(found, direction, across))
+
+
+def map_surface(found: Dataset, *, direction: int = 0, across: Across | None = None, ax: Axes | None = None) -> Figure:
+    """The plane with the best cell as a surface, offset along the drill by the value (thesis Fig. 20).
+
+    The robot stands beside it at home.
+
+    Args:
+        found: a workspace map on a grid, with two cells or more each way in a plane.
+        direction: number of the direction of the drill, of those that the map has.
+        across: the axis that the planes stand across; None: the one that the drill is nearest to.
+        ax: to draw into, in 3D; None: a figure with a heading.
+
+    Raises:
+        InputError: the map is not on such a grid, or the axes are not in 3D.
+    """
+    planes, subtitle = _wide_planes(found, direction, across)
+    return surface_figure(best_plane(planes), subtitle, robot_at_home(found), ax)
+
+
+def map_views(found: Dataset, *, direction: int = 0, across: Across | None = None) -> Figure:
+    """All planes of a workspace map at once, seen from below and from the side (thesis Figures 22 to 24).
+
+    Each is a surface, offset along the drill by the value; the best cell has a ring.
+
+    Args:
+        found: a workspace map on a grid, with two cells or more each way in a plane.
+        direction: number of the direction of the drill, of those that the map has.
+        across: the axis that the planes stand across; None: the one that the drill is nearest to.
+
+    Raises:
+        InputError: the map is not on such a grid.
+    """
+    return views_figure(*_wide_planes(found, direction, across), robot_at_home(found))
+
+
+def map_cell(found: Dataset, *, ax: Axes | None = None) -> Figure:
+    """The targets of a workspace map around the robot, coloured by their best direction (thesis Fig. 25).
+
+    The robot is drawn at home and, where the map has a motion, at the bottom of the best hole.
+
+    Args:
+        found: a workspace map, on a grid or of given targets.
+        ax: to draw into, in 3D; None: a figure with a heading.
+
+    Raises:
+        InputError: the axes are not in 3D.
+    """
+    cells = cells_of(found)
+    robots = [("robot at home", robot_at_home(found))]
     reached = _robot_at_best(found, cells)
     if reached is not None:
         robots.append(("at the best cell", reached))
-    figures["cell"] = robot_in_cell(cells, subtitle, robots, [str(name) for name in found.attrs.get("ids", ())])
+    return robot_in_cell(cells, heading(found), robots, [str(name) for name in found.attrs.get("ids", ())], ax)
+
+
+def map_rose(found: Dataset, at: Sequence[float] | None = None, *, ax: Axes | None = None) -> Figure:
+    """What one target of a workspace map allows by direction of the drill, on a disc that keeps areas.
+
+    Each direction is a dot, and colours its surroundings; in the middle is their mean.
+
+    Args:
+        found: a workspace map with several directions.
+        at: the target [mm]; None: that of the best cell.
+        ax: to draw into; None: a figure with a heading.
+
+    Raises:
+        InputError: `at` is no target of the map, or the map has one direction.
+    """
+    cells = cells_of(found)
+    if len(cells.direction) < 2:
+        raise InputError("has one direction", where="map", accepted="a map with several directions")
+    return direction_rose(cells, _row_of(cells, at), heading(found), ax)
+
+
+def _planes(found: Dataset, direction: int, across: Across | None) -> tuple[list[Plane], str]:
+    """The planes of a map, and its heading with their direction where it has several."""
+    cells, subtitle = cells_of(found), heading(found)
+    planes = planes_of(cells, direction, across)
     if len(cells.direction) > 1:
-        figures["rose"] = direction_rose(cells, row, subtitle)
-    return figures
+        subtitle += f"   |   drilled along {named_direction(cells.direction[direction])}"
+    return planes, subtitle
+
+
+def _wide_planes(found: Dataset, direction: int, across: Across | None) -> tuple[list[Plane], str]:
+    """Likewise; refused where they are only a row of cells."""
+    planes, subtitle = _planes(found, direction, across)
+    if min(planes[0].value.shape) < 2:
+        raise InputError("is a row of cells", where=planes[0].name, accepted="two cells or more each way in a plane")
+    return planes, subtitle
 
 
 def robot_at_home(found: Dataset) -> Array:

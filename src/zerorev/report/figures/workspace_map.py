@@ -20,7 +20,7 @@ from zerorev.report.figures import style
 
 __all__ = [
     "NUMBERED", "ROBOT_COLOUR", "VALUE_MAP", "best_plane", "capital", "colours_of", "dress_cell", "grey_legend", "heat",
-    "map_planes", "map_surface", "map_views", "relief", "value_bar", "write_numbers",
+    "planes_figure", "relief", "surface_figure", "value_bar", "views_figure", "write_numbers",
 ]  # fmt: skip
 
 VALUE_MAP = "viridis"  # in order to the colour-blind, too, and nowhere grey
@@ -63,17 +63,19 @@ def value_bar(figure: Figure, quantity: Quantity, cmap: Any, norm: Normalize, ax
         bar.set_ticks(range(most + 1), labels=[*map(str, range(most)), f"{most}+"])
 
 
-def map_surface(plane: Plane, subtitle: str, robot: Array) -> Figure:
+def surface_figure(plane: Plane, subtitle: str, robot: Array, ax: Axes | None = None) -> Figure:
     """One plane as a surface, offset along the drill by the value, with the robot at home (thesis Fig. 20).
 
     Args:
         plane: of a map; it needs two cells or more each way.
         subtitle: of the map.
         robot: places along the arm [mm], shape (P, 3).
+        ax: to draw into, in 3D; None: a figure with a heading.
     """
-    figure = style.headed_figure(f"{capital(plane.quantity.title)} at {plane.name}", subtitle, 6.4)
-    axes = figure.add_subplot(projection="3d", computed_zorder=False)
+    title = f"{capital(plane.quantity.title)} at {plane.name}"
+    figure, axes = style.one_axes(ax, title, subtitle, 6.4, "3d")
     assert isinstance(axes, Axes3D)
+    axes.computed_zorder = False
     cmap, norm = colours_of(plane.quantity, plane.value)
     places = plane.surface(relief([plane]))
     axes.plot(*robot.T, color=ROBOT_COLOUR, linewidth=3.0, marker="o", markersize=5, zorder=1)
@@ -83,7 +85,7 @@ def map_surface(plane: Plane, subtitle: str, robot: Array) -> Figure:
     )  # fmt: skip
     dress_cell(axes, np.vstack([places.reshape(-1, 3), robot]))
     value_bar(figure, plane.quantity, cmap, norm, axes, shrink=0.6, pad=0.08)
-    grey_legend(figure, plane.quantity)
+    grey_legend(figure, plane.quantity, ax=ax)
     return figure
 
 
@@ -107,7 +109,7 @@ def dress_cell(axes: Axes3D, everything: Array) -> None:
     axes.locator_params(nbins=5)
 
 
-def map_planes(planes: Sequence[Plane], subtitle: str, *, alike: bool = True) -> Figure:
+def planes_figure(planes: Sequence[Plane], subtitle: str, *, alike: bool = True) -> Figure:
     """The planes of a map side by side, each as it is seen along the drill (thesis Fig. 21).
 
     Args:
@@ -147,7 +149,7 @@ def map_planes(planes: Sequence[Plane], subtitle: str, *, alike: bool = True) ->
     return figure
 
 
-def map_views(planes: Sequence[Plane], subtitle: str, robot: Array) -> Figure:
+def views_figure(planes: Sequence[Plane], subtitle: str, robot: Array) -> Figure:
     """All planes at once as surfaces seen from two sides, square on: from below and from the side (Figures 22 to 24).
 
     The best cell has a ring.
@@ -288,17 +290,18 @@ def _chosen(planes: Sequence[Plane]) -> list[Plane]:
     return [planes[n] for n in np.linspace(0, len(planes) - 1, MOST_PLANES).round().astype(int)]
 
 
-def grey_legend(figure: Figure, quantity: Quantity, handles: Sequence[Any] = ()) -> None:
+def grey_legend(figure: Figure, quantity: Quantity, handles: Sequence[Any] = (), ax: Axes | None = None) -> None:
     """What grey means, after other entries of the legend.
 
     Args:
         figure: to be explained.
         quantity: that is shown.
         handles: of the other entries.
+        ax: of the caller's own, where it is drawn into those.
     """
     nothing = "no stroke without reversals" if quantity.variable == "deepest_mm" else "no answer"
     grey = Patch(facecolor=style.CANNOT_RUN, edgecolor=style.MUTED, linewidth=0.4, label=nothing)
-    style.legend_below(figure, [*handles, grey], columns=len(handles) + 1)
+    style.legend_below(figure, [*handles, grey], len(handles) + 1, ax)
 
 
 def capital(text: str) -> str:

@@ -17,6 +17,7 @@ from zerorev.model.robot import Robot
 
 __all__ = [
     "finding_lines",
+    "hole_check",
     "hole_findings",
     "plan_table",
     "robot_heading",
@@ -55,14 +56,6 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
     before = "?" if hole.baseline is None else str(hole.baseline.reversals)
     spins = "  ".join(_number(spin, 2) for spin in np.rad2deg(motion.profile.psi))
-    checked = hole.verified
-    verdict = Text("no", style="yellow") if checked is None else Text("yes", style="green")
-    if checked is not None and not checked.passed:
-        verdict = Text("FAILED", style="bold red")
-    if hole.certificate is not None:
-        verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
-    if (within := hole.certified_within) is not None:
-        verdict.append(f" within {within.position * 1e3:.6g} mm, {np.rad2deg(within.rotation):.6g} deg", "green")
     slow = slowest(score, plan.settings)
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
@@ -71,8 +64,21 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         Text(spins),
         Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
         Text(_deepest(hole)),
-        verdict,
+        hole_check(hole),
     ]
+
+
+def hole_check(hole: HolePlan) -> Text:
+    """Whether the check of a motion passed, and what is proven of it."""
+    checked = hole.verified
+    verdict = Text("no", style="yellow") if checked is None else Text("yes", style="green")
+    if checked is not None and not checked.passed:
+        verdict = Text("FAILED", style="bold red")
+    if hole.certificate is not None:
+        verdict.append(f", {hole.certificate.verdict}", PROOFS[hole.certificate.verdict])
+    if (within := hole.certified_within) is not None:
+        verdict.append(f" within {within.position * 1e3:.6g} mm, {np.rad2deg(within.rotation):.6g} deg", "green")
+    return verdict
 
 
 def _deepest(hole: HolePlan) -> str:

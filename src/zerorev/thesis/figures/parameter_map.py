@@ -31,7 +31,7 @@ def parameter_slices(slices: Mapping[str, Dataset]) -> Figure:
     """Objective (upper row) and reversals (lower row) over psi_start and psi_end [deg], as the thesis' Fig. 26.
 
     Args:
-        slices: what each column is called, and its map at one psi_target.
+        slices: what each column is called, and its parameter map at one psi_target.
     """
     first = next(iter(slices.values()))
     psi_target = float(first["psi_target_deg"].values.ravel()[0])
@@ -59,17 +59,20 @@ def parameter_slices(slices: Mapping[str, Dataset]) -> Figure:
     return figure
 
 
-def zero_volume(found: Dataset) -> Figure:
+def zero_volume(found: Dataset, *, ax: Axes | None = None) -> Figure:
     """The spins with zero reversals [deg] as points of the cube, coloured by travel [deg], with their shadows.
 
     Args:
         found: a whole parameter map.
+        ax: to draw into, in 3D; None: a figure with a heading.
+
+    Raises:
+        InputError: the axes are not in 3D.
     """
     zero = np.argwhere(found["reversals"].values == 0)
     t, s, e = (found[name].values[column] for name, column in zip(found["score"].dims, zero.T, strict=True))
-    figure = style.headed_figure(f"Where no joint reverses: {len(zero):,} of {found['score'].size:,} motions",
-                                 heading(found), 6.3)  # fmt: skip
-    axes = figure.add_subplot(projection="3d")
+    title = f"Where no joint reverses: {len(zero):,} of {found['score'].size:,} motions"
+    figure, axes = style.one_axes(ax, title, heading(found), 6.3, "3d")
     assert isinstance(axes, Axes3D)
     low, high = (float(found["psi_start_deg"].values[k]) for k in (0, -1))
     for place, at in ((0, low), (1, high), (2, low)):

@@ -13,9 +13,9 @@ from zerorev.model._arrays import Array
 from zerorev.model.quantity import quantity
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.report.figures.cell import robot_in_cell
-from zerorev.report.figures.map_difference import map_difference
+from zerorev.report.figures.map_difference import difference_figure
 from zerorev.report.figures.style import png
-from zerorev.report.figures.workspace_map import map_planes, map_surface, map_views
+from zerorev.report.figures.workspace_map import planes_figure, surface_figure, views_figure
 from zerorev.report.scene.skeleton import home, skeleton
 from zerorev.search.deepest import deepest_stroke
 from zerorev.thesis.reproduce.context import Context
@@ -245,15 +245,15 @@ def _pictures(context: Context, plane: _Plane, apart: Difference, volume: Field)
     (ours,) = planes_of(plane.periodic)
     return (
         Picture("table_5", "Table 5: the thesis, ours with periodic spin, and the difference.",
-                png(map_difference(apart, ("thesis", "exact")))),
+                png(difference_figure(apart, ("thesis", "exact")))),
         Picture("fig_20", "Figure 20: the plane as a surface, offset along the drill by the deepest stroke.",
-                png(map_surface(ours, subtitle, robot))),
+                png(surface_figure(ours, subtitle, robot))),
         Picture("fig_21", "Figure 21: plane by plane at 50 mm, in one colour scale (the thesis' has one a plane).",
-                png(map_planes(front, subtitle))),
+                png(planes_figure(front, subtitle))),
         Picture("fig_22_23", "Figures 22 and 23: the planes from below and from the side; the ring is the best cell.",
-                png(map_views(front, subtitle, robot))),
+                png(views_figure(front, subtitle, robot))),
         Picture("fig_24", "Figure 24: the planes X = −100, 0 and 100 mm. The last is flat: it has no stroke at all.",
-                png(map_views(back, subtitle, robot))),
+                png(views_figure(back, subtitle, robot))),
         Picture("fig_25", "Figure 25: the three positions in the cell, and the robot at home.",
                 png(robot_in_cell(three, subtitle, [("robot at home", robot)], [each.name for each in POSITIONS]))),
     )  # fmt: skip

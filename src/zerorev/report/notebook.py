@@ -1,0 +1,93 @@
+"""Plans and depths as a notebook shows them: a table, the findings, one picture.
+
+All of it is text of unknown origin (ids come from the user's files), so every piece of it is made visible and escaped.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+
+import numpy as np
+
+from zerorev.model._arrays import Array
+from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.report.words.hole_rows import hole_row
+from zerorev.report.words.tables import finding_lines, hole_check, hole_findings
+from zerorev.visible import one_line
+
+__all__ = ["ROWS", "html_of"]
+
+ROWS = 20  # of the table; more holes are counted
+COLUMNS = (
+    "hole", "depth [mm]", "reversals<br>baseline → plan", "travel [deg]", "margin [mm]", "deepest [mm]", "verified",
+)  # fmt: skip
+RIGHT, LEFT = "text-align: right", "text-align: left"
+PICTURE = "max-width: 100%; width: 800px; background: white"
+
+
+def html_of(answer: Plan | HolePlan) -> str:
+    """The HTML of a plan (or of depths) or of one hole of it.
+
+    A hole alone does not know its robot, so that its joints cannot be drawn: it has no picture.
+
+    Args:
+        answer: a plan, of which the first holes are shown, or the plan of a hole.
+    """
+    if isinstance(answer, HolePlan):
+        return _div(_table([answer], np.eye(4)), _findings(hole_findings(answer)))
+    found = [*answer.findings, *(finding for hole in answer.holes for finding in hole_findings(hole))]
+    robot = f"{answer.robot.manufacturer} {answer.robot.model}".strip() or answer.robot.name
+    kind = "plan" if answer.strokes == "asked" else "depths"
+    count = f"{len(answer.holes):,} hole{'' if len(answer.holes) == 1 else 's'}"
+    heading = f"<p><b>{_text(answer.name)}</b>: {kind} of {count}, {_text(robot)}, {_text(answer.tool.name)}</p>"
+    return _div(heading, _table(answer.holes, answer.T_base_part), _findings(found), _picture(answer))
+
+
+def _table(holes: Sequence[HolePlan], T_base_part: Array) -> str:
+    head = "".join(f'<th style="{RIGHT if n else LEFT}">{column}</th>' for n, column in enumerate(COLUMNS))
+    rows = "".join(
+        "<tr>" + "".join(f'<td style="{RIGHT if n else LEFT}">{_text(cell)}</td>' for n, cell in enumerate(cells))
+        + "</tr>"
+        for cells in (_cells(hole, T_base_part) for hole in holes[:ROWS])
+    )  # fmt: skip
+    more = f"<p>and {len(holes) - ROWS:,} more</p>" if len(holes) > ROWS else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
+
+
+def _cells(hole: HolePlan, T_base_part: Array) -> Iterable[str]:
+    row = hole_row(hole.hole, hole, T_base_part)
+    deepest = None if hole.deepest is None else hole.deepest * 1e3
+    yield row.id
+    yield f"{row.depth:g}"
+    yield "infeasible" if row.after is None else f"{'?' if row.before is None else row.before} → {row.after}"
+    yield from ("–" if value is None else f"{value:.1f}" for value in (row.travel, row.margin, deepest))
+    yield "–" if row.after is None else hole_check(hole).plain
+
+
+def _findings(found: Iterable[Finding]) -> str:
+    lines = "\n".join(_text(line.plain) for line in finding_lines(found))
+    return f'<pre style="white-space: pre-wrap; {LEFT}">{lines}</pre>' if lines else ""
+
+
+def _picture(plan: Plan) -> str:
+    """The joints of the first hole that has a motion, where matplotlib is there to draw them."""
+    first = next((hole for hole in plan.holes if hole.motion is not None), None)
+    if first is None or find_spec("matplotlib") is None:
+        return ""
+    from zerorev.report.figures.joints import joint_angles
+    from zerorev.report.figures.style import png
+
+    data = base64.b64encode(png(joint_angles(plan, first))).decode("ascii")
+    alt = _text(f"Joint angles of hole {first.hole.id} along the motion")
+    return f'<img src="data:image/png;base64,{data}" alt="{alt}" style="{PICTURE}">'
+
+
+def _div(*parts: str) -> str:
+    return f"<div>{''.join(parts)}</div>"
+
+
+def _text(text: str) -> str:
+    return html.escape(one_line(text))
