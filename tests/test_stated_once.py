@@ -148,7 +148,8 @@ from zerorev.files.plan_schema import PlanFile
 
 old = zr.read_plan(sys.argv[1])
 first = old.holes[0]
-new = replace(old, holes=(replace(first, verified=replace(first.verified, wobble=0.25)), *old.holes[1:]))
+new = replace(first, verified=replace(first.verified, wobble=0.25), room=3e-3)
+new = replace(old, holes=(new, *old.holes[1:]))
 zr.write_plan(new, "new.json")
 print(json.dumps({
     "schema": PlanFile.model_json_schema()["$defs"]["VerifiedForm"]["properties"]["wobble_deg"],
@@ -156,15 +157,23 @@ print(json.dumps({
     "older plan": str(first.verified.wobble), "doc": zr.model.plan.Verification.__doc__,
     "written": files.plan_to_json(new)["holes"][0]["verified"]["wobble_deg"],
     "again": zr.read_plan("new.json").holes[0].verified.wobble,
+    "hole": PlanFile.model_json_schema()["$defs"]["PlanHole"]["properties"]["room_mm"]["description"],
+    "older hole": first.room, "hole again": zr.read_plan("new.json").holes[0].room,
+    "hole written": files.plan_to_json(new)["holes"][0]["room_mm"],
 }))
 """
 
 
 def test_a_figure_of_an_answer_is_one_declaration(edited):
-    found = edited([("model/plan.py", "    subject: str | None", FIGURE)], ASK_FIGURE)
+    edits = [("model/plan.py", "    subject: str | None", FIGURE), ("model/plan.py", "    optimality: Opt", OF_A_HOLE)]
+    found = edited(edits, ASK_FIGURE)
     assert found["schema"]["description"] == "a number [deg]: made up"
     assert "wobble_deg" not in found["needed"]
     assert found["older plan"] == "nan"
     assert "wobble: made up [rad]." in found["doc"]
     assert found["written"] == pytest.approx(np.rad2deg(0.25))
     assert found["again"] == pytest.approx(0.25)
+    assert found["hole"] == "a number [mm]: made up, too; or null: unknown"
+    assert found["older hole"] is None
+    assert found["hole written"] == 3.0
+    assert found["hole again"] == pytest.approx(3e-3)

@@ -113,20 +113,19 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             profile=given_profile(given.standoff_mm, given.psi_deg, form.depth_mm),
             branch=given.branch,
         )
-        return HolePlan(
+        return noun_from(
+            HolePlan,
+            form,
             hole=hole,
             status=form.status,
-            wrist_offset=float(m(form.wrist_offset_mm)),
             motion=_motion_from(form),
             score=_score_from(form),
-            baseline=_noun_from(Baseline, form.baseline, "baseline"),
+            baseline=_noun_from(Baseline, form.baseline, "baseline."),
             verified=_noun_from(Verification, form.verified),
             findings=_nouns_from(Finding, form.findings),
             certificate=_noun_from(Certificate, form.certificate),
             certified_within=_noun_from(Within, form.certified_within),
             measures=_noun_from(Measures, form.criteria),
-            deepest=None if form.deepest_mm is None else float(m(form.deepest_mm)),
-            deepest_at_most=None if form.deepest_at_most_mm is None else float(m(form.deepest_at_most_mm)),
             optimality=_noun_from(Optimality, form.optimality),
             critical_rates=_critical_from(form),
         )
@@ -147,20 +146,10 @@ def _motion_from(form: PlanHole) -> Motion | None:
 
 
 def _score_from(form: PlanHole) -> Score | None:
-    match [getattr(form, name) for name in SCORE]:
-        case [None, None, None, None, None, None, None]:
-            return None
-        case [int(count), list(counts), list(events), float(travel_deg), list(least), list(mean), list(distance)]:
-            agree("reversals", count, sum(counts))
-            return Score(
-                reversals_per_joint=tuple(counts),
-                events=_nouns_from(Event, events),
-                travel=float(rad(travel_deg)),
-                min_rate=rad_per_m(_measured(least)),
-                mean_rate=rad_per_m(_measured(mean)),
-                limit_distance=rad(_measured(distance)),
-            )
-    raise InputError("some are null", where=", ".join(SCORE), accepted="all or none of them null")
+    undefined = {getattr(form, name) is None for name in SCORE}
+    if len(undefined) > 1:
+        raise InputError("some are null", where=", ".join(SCORE), accepted="all or none of them null")
+    return None if form.events is None else noun_from(Score, form, events=_nouns_from(Event, form.events))
 
 
 def _critical_from(form: PlanHole) -> Array | None:

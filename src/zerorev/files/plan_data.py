@@ -11,13 +11,8 @@ from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
-from zerorev.model.plan import (
-    HolePlan,
-    Motion,
-    Plan,
-    Score,
-    Strokes,
-)
+from zerorev.model.plan import HolePlan, Motion, Plan, Score, Strokes
+from zerorev.model.stated import stated
 
 __all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
 
@@ -25,15 +20,7 @@ FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "de
 """What file a plan becomes, by its strokes."""
 
 MOTION = ("branch", "standoff_mm", "psi_deg", "joints_deg")
-SCORE = (
-    "reversals",
-    "reversals_per_joint",
-    "events",
-    "travel_deg",
-    "min_rate_deg_per_mm",
-    "mean_rate_deg_per_mm",
-    "limit_distance_deg",
-)
+SCORE = ("reversals", *(each.path[-1] for each in stated(Score)), "events")
 
 
 def plan_data(plan: Plan) -> dict[str, Any]:
@@ -75,15 +62,16 @@ def asked_data(hole: Hole) -> dict[str, Any]:
 
 
 def _hole_data(answer: HolePlan) -> dict[str, Any]:
+    figures = data_of(answer)
     return {
         **asked_data(answer.hole),
-        "deepest_mm": None if answer.deepest is None else mm(answer.deepest),
-        "deepest_at_most_mm": None if answer.deepest_at_most is None else mm(answer.deepest_at_most),
+        "deepest_mm": figures.pop("deepest_mm"),
+        "deepest_at_most_mm": figures.pop("deepest_at_most_mm"),
         "status": answer.status,
         **_motion_data(answer.motion),
         **_score_data(answer.score),
         **_critical_data(answer.critical_rates),
-        "wrist_offset_mm": mm(answer.wrist_offset),
+        **figures,
         "optimality": _data(answer.optimality),
         "baseline": _data(answer.baseline),
         "verified": _data(answer.verified),
@@ -133,14 +121,8 @@ def _motion_data(motion: Motion | None) -> dict[str, Any]:
 
 
 def _score_data(score: Score | None) -> dict[str, Any]:
+    # the events stand in the middle
+    places = dict.fromkeys(("reversals", "reversals_per_joint", "events"))
     if score is None:
-        return dict.fromkeys(SCORE)
-    return {
-        "reversals": score.reversals,
-        "reversals_per_joint": score.reversals_per_joint,
-        "events": [data_of(event) for event in score.events],
-        "travel_deg": deg(score.travel),
-        "min_rate_deg_per_mm": deg_per_mm(score.min_rate),
-        "mean_rate_deg_per_mm": deg_per_mm(score.mean_rate),
-        "limit_distance_deg": deg(score.limit_distance),
-    }
+        return places | dict.fromkeys(SCORE)
+    return places | data_of(score) | {"events": [data_of(event) for event in score.events]}

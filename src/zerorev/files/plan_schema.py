@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
@@ -22,9 +22,19 @@ from zerorev.files.schema import (
     StandoffsMm,
     ToolForm,
 )
-from zerorev.files.stated_forms import Counted, Form, Many, SixCounted, SixMeasured, keys_of
+from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
 from zerorev.model.measures import Measures
-from zerorev.model.plan import Baseline, Certificate, Event, Finding, Optimality, Verification, Within
+from zerorev.model.plan import (
+    Baseline,
+    Certificate,
+    Event,
+    Finding,
+    HolePlan,
+    Optimality,
+    Score,
+    Verification,
+    Within,
+)
 
 __all__ = [
     "BaselineForm",
@@ -119,22 +129,19 @@ class WithinForm(Form):
     """How far the part may stand off its part frame."""
 
 
+@keys_of(HolePlan, needed=True)
+@keys_of(Score, or_null=True)
 class PlanHole(Form):
     """One hole's answer; what describes a motion is null where there is none."""
+
+    # Any: as it is stated in Score or HolePlan
 
     id: Name = Field(description="text: the hole's id")
     target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, base frame")
     direction: Unit = Field(description="three numbers: unit vector into the material, base frame")
     depth_mm: Depth = Field(description="a number above 0 [mm]: the stroke")
-    deepest_mm: NotNegative | None = Field(
-        default=None,
-        description="a number [mm]: the deepest stroke without a reversal, 0: none; or null: not looked for",
-    )
-    deepest_at_most_mm: NotNegative | None = Field(
-        default=None,
-        description="a number [mm]: no stroke without a reversal is as deep, of straight or free legs as the settings"
-        " say; or null: not proven",
-    )
+    deepest_mm: Any
+    deepest_at_most_mm: Any
     psi_zero: Unit = Field(description="three numbers: unit vector of Y_tcp at psi = 0, base frame")
     given: GivenForm | None = Field(
         default=None,
@@ -147,19 +154,13 @@ class PlanHole(Form):
     standoff_mm: StandoffsMm | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")
     psi_deg: SpinsDeg | None = Field(description="as many numbers [deg] as standoff_mm: the spins there")
     joints_deg: JointsDegForm | None = Field(description="a mapping of start, target, end and breakpoints")
-    reversals: Counted | None = Field(description="a whole number: reversals of all joints")
-    reversals_per_joint: SixCounted | None = Field(description="six whole numbers")
+    reversals: Any
+    reversals_per_joint: Any
     events: Many[EventForm] | None = Field(description="a list of joint, leg and standoff_mm: where joints reverse")
-    travel_deg: NotNegative | None = Field(description="a number [deg]: sum over the joints of the angle moved")
-    min_rate_deg_per_mm: SixMeasured | None = Field(
-        description="six numbers [deg/mm]: slowest motion of each joint at any point; null: undefined"
-    )
-    mean_rate_deg_per_mm: SixMeasured | None = Field(
-        description="six numbers [deg/mm]: each joint's lesser mean motion of the two legs; null: undefined"
-    )
-    limit_distance_deg: SixMeasured | None = Field(
-        description="six numbers [deg]: least distance to a joint limit, negative beyond it; null: undefined"
-    )
+    travel_deg: Any
+    min_rate_deg_per_mm: Any
+    mean_rate_deg_per_mm: Any
+    limit_distance_deg: Any
     critical_rates_deg_per_mm: SixMeasured | None = Field(
         default=None,
         description="six numbers [deg/mm]: twist rate at which each joint stands still at the corner; null: none",
@@ -167,7 +168,7 @@ class PlanHole(Form):
     twist_spread_deg_per_mm: NotNegative | None = Field(
         default=None, description="a number [deg/mm]: greatest less least critical rate; or null: a joint has none"
     )
-    wrist_offset_mm: NotNegative = Field(description="a number [mm]: distance of the wrist centre from the drill axis")
+    wrist_offset_mm: Any
     optimality: OptimalityForm | None = Field(
         default=None,
         description="a mapping of what no motion of straight legs can beat; or null: no proof was asked for",

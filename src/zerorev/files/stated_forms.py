@@ -51,12 +51,13 @@ def kind(value: object) -> str | None:
     return tags.get(type(value))
 
 
-def keys_of(noun: type, *, needed: bool = False) -> Callable[[type[F]], type[F]]:
-    """Gives a form, after its own keys, one for each stated attribute of a noun.
+def keys_of(noun: type, *, needed: bool = False, or_null: bool = False) -> Callable[[type[F]], type[F]]:
+    """Gives a form a key for each stated attribute of a noun; one that the form names keeps its place.
 
     Args:
         noun: a dataclass.
         needed: whether a file has to have all of them, whatever the defaults of the noun, but those added later.
+        or_null: whether all may be null, because there is no such noun.
     """
 
     def with_keys(form: type[F]) -> type[F]:
@@ -73,6 +74,8 @@ def keys_of(noun: type, *, needed: bool = False) -> Callable[[type[F]], type[F]]
                 if isinstance(each, SixCounts) and each.total:
                     keys[each.total] = (Counted, Field(description="a whole number: reversals of all joints"))
                 keys[each.path[0]] = _key(each, needed)
+        if or_null:
+            keys = {key: (accepted | None, rest) for key, (accepted, rest) in keys.items()}
         return _form(form.__name__, form.__doc__, keys, form, form.__module__)
 
     return with_keys
@@ -159,14 +162,15 @@ def _word_or_weights(word: Stated, weighed: Weighed) -> tuple[Any, Any]:
     return Annotated[either, Discriminator(kind)], Field(default=word.default, description=words)
 
 
-def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "") -> N:
+def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "", **others: Any) -> N:
     """The noun of a form that has the keys of its stated attributes.
 
     Args:
-        noun: a dataclass; attributes without a statement have to have a default.
+        noun: a dataclass.
         form: as it was read.
         before: whether a key that is missing means what it meant before it existed, as in a file of answers.
-        where: of the form, for messages.
+        where: of the form, for messages; with a point at its end.
+        others: the attributes without a statement, but those that have a default.
 
     Raises:
         InputError: numbers that the noun does not accept, or that contradict each other.
@@ -185,9 +189,9 @@ def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "
             values[each.name] = each.before if before else each.default
             continue
         if isinstance(each, SixCounts) and each.total:
-            agree(f"{where}.{each.total}", getattr(form, each.total), sum(value))
+            agree(f"{where}{each.total}", getattr(form, each.total), sum(value))
         values[each.name] = _inside(each, value)
-    return noun(**values)
+    return noun(**values, **others)
 
 
 def agree(name: str, stated: Any, found: Any, tolerance: float = 0.0) -> None:

@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
-from zerorev.model.stated import attributes, stated
+from zerorev.model.stated import stated, with_attributes
 from zerorev.model.stated_figures import Figure
 from zerorev.model.units import DEG, DEG_PER_MM, RPM, UM_PER_N
 
@@ -151,7 +151,7 @@ class Measures(Generic[V]):
     ]
 
 
-Measures.__doc__ = f"{Measures.__doc__}\n{attributes(Measures)}"
+Measures.__doc__ = with_attributes(Measures)
 
 
 def criteria(noun: type[Any]) -> dict[str, Criterion]:

@@ -16,7 +16,7 @@ from zerorev.model.measures import Measures, V
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.shown import Shown
-from zerorev.model.stated import Choice, Switch, Whole, attributes
+from zerorev.model.stated import Choice, Switch, Whole, with_attributes
 from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
 from zerorev.model.tool import Tool
 from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT
@@ -88,21 +88,23 @@ class Event:
 class Score:
     """What a motion does to the joints.
 
+    `min_rate` is |d theta / d path| (rule `pointwise`), `mean_rate` the average of a leg (rule `mean`); the arrays have
+    shape (6,).
+
     Attributes:
-        reversals_per_joint: count of direction changes, shape (6,), int.
-        events: where they happen, in order of motion.
-        travel: sum over the joints of the angle moved [rad].
-        min_rate: least |d theta / d path| at any point of the motion [rad/m], shape (6,) (rule `pointwise`).
-        mean_rate: the lesser of the two legs' average |d theta / d path| [rad/m], shape (6,) (rule `mean`).
-        limit_distance: least distance to a joint limit [rad], shape (6,); negative beyond it.
+        events: where the joints reverse, in order of motion.
     """
 
-    reversals_per_joint: tuple[int, ...]
+    reversals_per_joint: Annotated[tuple[int, ...], SixCounts("reversals of each joint", total="reversals")]
     events: tuple[Event, ...]
-    travel: float
-    min_rate: Array
-    mean_rate: Array
-    limit_distance: Array
+    travel: Annotated[float, Figure("sum over the joints of the angle moved", DEG, least=0)]
+    min_rate: Annotated[Array, SixFigures("slowest motion of each joint at any point", DEG_PER_MM, none="undefined")]
+    mean_rate: Annotated[
+        Array, SixFigures("each joint's lesser mean motion of the two legs", DEG_PER_MM, none="undefined")
+    ]
+    limit_distance: Annotated[
+        Array, SixFigures("least distance to a joint limit, negative beyond it", DEG, none="undefined")
+    ]
 
     @property
     def reversals(self) -> int:
@@ -129,7 +131,7 @@ class Motion:
 class Baseline:
     """The same hole drilled with constant spin psi = psi_start on the plan's branch."""
 
-    reversals_per_joint: Annotated[tuple[int, ...], SixCounts(total="reversals")]
+    reversals_per_joint: Annotated[tuple[int, ...], SixCounts("reversals of each joint", total="reversals")]
     travel: Annotated[float, Figure("sum over the joints of the angle moved", DEG, least=0)]
 
     @property
@@ -233,6 +235,9 @@ class Optimality:
 class HolePlan(Shown):
     """One hole's answer.
 
+    The wrist's distance from the drill axis is the lever of the spin (theory §1). The deepest stroke is on the hole's
+    own branch if it names one, of legs of the kind asked for.
+
     Attributes:
         hole: what was asked.
         status: `planned` (searched for), `evaluated` (given and looked at), `infeasible` (no motion at all).
@@ -241,12 +246,8 @@ class HolePlan(Shown):
         baseline: the same with constant spin, or None where that cannot be run.
         verified: the independent check, or None where it was not run.
         findings: what a user should know.
-        wrist_offset: distance of the wrist centre from the drill axis [m], the lever of the spin (theory §1).
         certificate: the rigorous proof, or None where it was not asked for.
         measures: what the criteria measure of the motion, or None.
-        deepest: the deepest stroke without a reversal [m], on the hole's own branch if it names one; 0 where there is
-            none, None where it was not looked for.
-        deepest_at_most: no stroke without a reversal of legs of the kind asked for is as deep [m]; None: not proven.
         optimality: how much better a motion could be, or None where that was not asked.
         critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
             finite where a joint has none; None without a motion.
@@ -255,7 +256,7 @@ class HolePlan(Shown):
 
     hole: Hole
     status: Literal["planned", "evaluated", "infeasible"]
-    wrist_offset: float
+    wrist_offset: Annotated[float, Figure("distance of the wrist centre from the drill axis", MM, least=0)]
     motion: Motion | None = None
     score: Score | None = None
     baseline: Baseline | None = None
@@ -263,8 +264,23 @@ class HolePlan(Shown):
     findings: tuple[Finding, ...] = ()
     certificate: Certificate | None = None
     measures: Measures[float] | None = None
-    deepest: float | None = None
-    deepest_at_most: float | None = None
+    deepest: Annotated[
+        float | None,
+        Figure(
+            "the deepest stroke without a reversal, 0: none", MM, least=0, null=None, none="not looked for", added=True
+        ),
+    ] = None
+    deepest_at_most: Annotated[
+        float | None,
+        Figure(
+            "no stroke without a reversal is as deep, of straight or free legs as the settings say",
+            MM,
+            least=0,
+            null=None,
+            none="not proven",
+            added=True,
+        ),
+    ] = None
     optimality: Optimality | None = None
     critical_rates: Array | None = None
     certified_within: Within | None = None
@@ -300,5 +316,5 @@ class Plan(Shown):
         return self.findings + tuple(finding for hole in self.holes for finding in hole.findings)
 
 
-for _noun in (Finding, Event, Verification, Baseline, Certificate, Within, Optimality):
-    _noun.__doc__ = f"{_noun.__doc__}\n{attributes(_noun)}"
+for _noun in (Finding, Event, Score, Verification, Baseline, Certificate, Within, Optimality, HolePlan):
+    _noun.__doc__ = with_attributes(_noun)

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from zerorev.errors import InputError
 from zerorev.model.measures import CRITERIA, Measures
-from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, attributes, check
+from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NM_PER_RAD, Unit
 
 __all__ = ["Settings", "Weights"]
@@ -42,25 +42,18 @@ class Settings:
         Choice(
             words={"pointwise": "at every point", "mean": "on the average of each leg"},
             note="How the motion threshold is kept",
-            group=GOOD,
             label="kept",
         ),
     ] = "pointwise"
     psi_bound: Annotated[
         float | None,
         Number(
-            "spins stay within +- this",
-            DEG,
-            none="the spin is periodic",
-            above=0,
-            most=3_600,
-            group=GOOD,
-            label="spins within ±",
+            "spins stay within +- this", DEG, none="the spin is periodic", above=0, most=3_600, label="spins within ±"
         ),
     ] = None
     legs: Annotated[
         Legs,
-        Choice(words={"straight": "spin linear along each leg", "free": "spin varying freely along it"}, group=GOOD),
+        Choice(words={"straight": "spin linear along each leg", "free": "spin varying freely along it"}),
     ] = "straight"
     max_twist: Annotated[
         float,
@@ -69,7 +62,6 @@ class Settings:
             DEG_PER_MM,
             above=0,
             note="With `legs: straight` it does not count",
-            group=GOOD,
             label="greatest twist of free legs",
         ),
     ] = math.radians(5e3)
@@ -83,7 +75,6 @@ class Settings:
                 "plunge_rotation": "least spin during the plunge",
             },
             note="The mapping is of [criteria](#criteria), whose weighted sum is to be least",
-            group=GOOD,
             label="among equal reversals",
         ),
     ] = "travel"
@@ -93,7 +84,6 @@ class Settings:
             "pairs of a criterion and its weight, whose weighted sum is to be least instead of the objective",
             instead_of="objective",
             of=Measures,
-            group=GOOD,
             label="a weighted sum of criteria",
         ),
     ] = ()
@@ -105,20 +95,12 @@ class Settings:
             none="unknown",
             above=0,
             note="Needed to weigh compliance, and to state it",
-            group=GOOD,
         ),
     ] = None
-    reversal_weights: Annotated[tuple[float, ...], Six("what a reversal of each joint costs", above=0, group=GOOD)] = (
-        1.0,
-    ) * 6
+    reversal_weights: Annotated[tuple[float, ...], Six("what a reversal of each joint costs", above=0)] = (1.0,) * 6
     near_joints: Annotated[
         tuple[float, ...] | None,
-        Six(
-            "controller angles to which free turns are chosen nearest",
-            DEG,
-            none="the turns farthest from the limits",
-            group=GOOD,
-        ),
+        Six("controller angles to which free turns are chosen nearest", DEG, none="the turns farthest from the limits"),
     ] = None
     blend: Annotated[
         float,
@@ -139,7 +121,6 @@ class Settings:
             none="half of blend_mm",
             least=0,
             up_to="blend",
-            group=RUN,
             label="depth lost to it",
             empty="half of the blend",
         ),
@@ -150,13 +131,12 @@ class Settings:
             "whether the corner lies deeper by the shortfall, so that the depth is met",
             off="at the target, depth lost to the blend",
             on="deeper, so that the depth is met",
-            group=RUN,
             label="the corner lies",
         ),
     ] = False
     lead_in: Annotated[
         float,
-        Number("length run along the plunge leg before the drill enters", MM, least=0, group=RUN, label="lead-in"),
+        Number("length run along the plunge leg before the drill enters", MM, least=0, label="lead-in"),
     ] = 5e-3
     keep_lead_in: Annotated[
         bool,
@@ -166,16 +146,11 @@ class Settings:
             note="Within reach and limits, too; where it is shortened, there is a finding",
             off="it is shortened",
             on="the motion is another one",
-            group=RUN,
             label="where a joint would reverse on it",
         ),
     ] = False
-    feed_plunge: Annotated[float, Number("feed of the plunge", MM_S, nest=FEED, key="plunge", above=0, group=RUN)] = (
-        5e-3
-    )
-    feed_retract: Annotated[
-        float, Number("feed of the retract", MM_S, nest=FEED, key="retract", above=0, group=RUN)
-    ] = 20e-3
+    feed_plunge: Annotated[float, Number("feed of the plunge", MM_S, nest=FEED, key="plunge", above=0)] = 5e-3
+    feed_retract: Annotated[float, Number("feed of the retract", MM_S, nest=FEED, key="retract", above=0)] = 20e-3
     spindle_rpm: Annotated[
         float | None,
         Number(
@@ -184,7 +159,6 @@ class Settings:
             none="the program need not know it",
             above=0,
             note="Used for the finding on the drill's change of speed; the program does not switch the spindle",
-            group=RUN,
             label="spindle",
         ),
     ] = None
@@ -247,4 +221,4 @@ class Settings:
         return -self.shortfall if self.deepen_corner else 0.0
 
 
-Settings.__doc__ = f"{Settings.__doc__}\n{attributes(Settings)}"
+Settings.__doc__ = with_attributes(Settings)

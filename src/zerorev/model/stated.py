@@ -10,14 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
+from inspect import cleandoc
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
 from zerorev.errors import InputError
 from zerorev.model.units import ONE, Unit
 
 __all__ = [
-    "UNSET", "Choice", "Nest", "Number", "Six", "Stated", "Switch", "Weighed", "Whole", "attributes", "check", "scaled",
-    "stated",
+    "UNSET", "Choice", "Nest", "Number", "Six", "Stated", "Switch", "Weighed", "Whole", "check", "scaled", "stated",
+    "with_attributes",
 ]  # fmt: skip
 
 N = TypeVar("N")
@@ -53,7 +54,7 @@ class Stated:
         before: what a file of answers without the key means, where that is not the default; it was made before the
             key existed.
         note: what the table says besides.
-        group: legend of its part of the app's form; empty: it is not in the form.
+        group: legend of its part of the app's form; empty: that of the attribute before it.
         label: in the form; else what it means, or its name.
         empty: what an empty field of the form means; else what null means.
         name: of the attribute, filled in by `stated`.
@@ -77,7 +78,6 @@ class Stated:
 
     what: ClassVar[str]  # a file may have
     joined: ClassVar[str] = ": "  # to what it means
-    or_null: ClassVar[str] = "; or null: "
 
     @property
     def path(self) -> tuple[str, ...]:
@@ -94,6 +94,11 @@ class Stated:
     def span(self) -> str:
         """The range that a file's number has to be in, in words."""
         return ""
+
+    @property
+    def or_null(self) -> str:
+        """What goes before the meaning of null."""
+        return "; or null: "
 
     @property
     def accepted(self) -> str:
@@ -243,11 +248,12 @@ def stated(noun: type[Any]) -> tuple[Stated, ...]:
 
 
 def _stated(noun: type[Any]) -> Iterator[Stated]:
-    hints = get_type_hints(noun, include_extras=True)
+    hints, group = get_type_hints(noun, include_extras=True), ""
     for field in fields(noun):
         for said in getattr(hints[field.name], "__metadata__", ()):
             if isinstance(said, Stated):
-                yield replace(said, name=field.name, default=UNSET if field.default is MISSING else field.default)
+                group, default = said.group or group, UNSET if field.default is MISSING else field.default
+                yield replace(said, name=field.name, default=default, group=group)
 
 
 def check(noun: object) -> None:
@@ -277,12 +283,15 @@ def scaled(noun: N, factor: float) -> N:
     return replace(noun, **changed)  # type: ignore[type-var]
 
 
-def attributes(noun: type) -> str:
-    """The part of a docstring that says what each stated attribute is, in the units inside."""
-    lines = ["", "Attributes:"]
+def with_attributes(noun: type) -> str:
+    """A noun's docstring with what each stated attribute is, in the units inside."""
+    text = cleandoc(noun.__doc__ or "")
+    lines = [text] if "\nAttributes:" in text else [text, "", "Attributes:"]
     for each in stated(noun):
         unit = f" [{each.unit.si}]" if each.unit.si else ""
-        none = f"; None: {each.none}" if each.none else ""
-        choices = f"{each.accepted}{each.joined * bool(each.means)}" if isinstance(each, Choice) else ""
-        lines.append(f"    {each.name}: {choices}{each.means}{unit}{none}.")
+        nothing = "None" if getattr(each, "null", None) is None else "NaN"
+        none = f"; {nothing}: {each.none}" if each.none else ""
+        choices = isinstance(each, Choice) or not each.means
+        means = each.described.partition("; or null: ")[0] if choices else f"{each.means}{unit}{none}"
+        lines.append(f"    {each.name}: {means}.")
     return "\n".join(lines)

@@ -20,8 +20,6 @@ class Figure(Number):
     most: float | None = 1e15
     null: object = UNSET
 
-    or_null = "; null: "
-
     @property
     def nullable(self) -> bool:
         """Whether a file may have null."""
@@ -31,6 +29,11 @@ class Figure(Number):
     def span(self) -> str:
         """Nothing."""
         return ""
+
+    @property
+    def or_null(self) -> str:
+        """What goes before the meaning of null."""
+        return "; or null: " if self.added else "; null: "
 
 
 class SixFigures(Figure):

@@ -33,7 +33,7 @@ def settings_dialog(session: Session) -> Callable[[], None]:
     fields = Fields()
     with card:
         with ui.element("div").classes("zr-scroll"):
-            for legend in dict.fromkeys(each.group for each in stated(Settings) if each.group):
+            for legend in dict.fromkeys(each.group for each in stated(Settings)):
                 _part(fields, legend, [each for each in stated(Settings) if each.group == legend])
         dropped = ui.label().classes("zr-muted")
         fields.line()
