@@ -1,4 +1,4 @@
-"""A made-up setting and a made-up figure of an answer, added to a copy of the package by a declaration alone.
+"""A made-up setting, figure of an answer and criterion, added to a copy of the package by a declaration (and formulas).
 
 The copy has to know them wherever they are known: in the schemas, when files are read and written, on
 the command line, in the app and in the tables of the documentation.
@@ -33,6 +33,17 @@ SETTING = """
 """
 FIGURE = """
     wobble: Annotated[float, Figure("made up", DEG, null=math.nan, added=True)] = 0.5
+"""
+OF_A_HOLE = """
+    room: Annotated[float | None, Figure("made up, too", MM, null=None, none="unknown", added=True)] = None
+"""
+CRITERION = """
+    reach: Annotated[
+        V,
+        Criterion(
+            "greatest angle of joint 2", DEG, weighs="the reach", label="reach", scale=3.0, cost="made up", added=True
+        ),
+    ]
 """
 
 
@@ -177,3 +188,60 @@ def test_a_figure_of_an_answer_is_one_declaration(edited):
     assert found["older hole"] is None
     assert found["hole written"] == 3.0
     assert found["hole again"] == pytest.approx(3e-3)
+
+
+ASK_CRITERION = (
+    COMMON
+    + """
+from zerorev.files.plan_fields import HOLE_FIELDS
+from zerorev.verify.figures import figures
+from zerorev.motion.drilling import Drilling
+from zerorev.search.weighted import search_weighted
+
+asked = files.job_from_dict(JOB | {"objective": {"reach": 1, "travel": 0.25}})
+plan = zr.plan_job(asked)
+answer = plan.holes[0]
+joints = zr.evaluate(asked.robot, asked.tool, asked.holes[0], answer.motion.profile, 4).motion.joints
+stated_figure = files.plan_to_json(plan)["holes"][0]["criteria"]["reach_deg"]
+hole = zr.Hole("free", answer.hole.target, answer.hole.direction, 0.02, answer.hole.psi_zero)
+best = search_weighted(Drilling(asked.robot, asked.tool, hole), asked.settings)
+print(json.dumps({
+    "schema": JobFile.model_json_schema()["$defs"]["WeightsForm"]["properties"]["reach"]["description"],
+    "plan schema": PlanFile.model_json_schema()["$defs"]["CriteriaForm"]["properties"]["reach_deg"],
+    "read": dict(asked.settings.weights), "older plan": old.holes[0].measures and old.holes[0].measures.reach,
+    "stated": stated_figure, "found": float(np.rad2deg(np.abs(joints[:, 1]).max())),
+    "checked": zr.check_plan(plan).wrong, "optional": HOLE_FIELDS["criteria.reach_deg"].optional,
+    "best": best is not None, "form": labels[("objective", "reach")], "table": tables.criteria_table(),
+}))
+"""
+)
+
+
+@pytest.mark.long
+def test_a_criterion_is_one_declaration_and_its_two_formulas(edited):
+    edits = [
+        ("model/measures.py", "\n\nMeasures.__doc__", CRITERION),
+        (
+            "motion/criteria.py",
+            '    "manipulability": lambda',
+            '    "reach": lambda poses: np.abs(poses.joints[..., 1]),\n',
+        ),
+        (
+            "verify/figures.py",
+            "        manipulability=float(manip",
+            "        reach=float(np.abs(joints[:, 1]).max()),\n",
+        ),
+    ]
+    found = edited(edits, ASK_CRITERION)
+    assert found["schema"] == "a number, 0 or more: weight of the reach"
+    assert found["plan schema"]["description"] == "a number [deg]: greatest angle of joint 2"
+    assert found["plan schema"]["default"] is None
+    assert found["read"] == {"travel": 0.25, "reach": 1.0}
+    assert np.isnan(found["older plan"])
+    assert found["stated"] >= found["found"] - 1e-9
+    assert found["stated"] == pytest.approx(found["found"], abs=0.1)
+    assert list(found["checked"]) == []
+    assert found["optional"]
+    assert found["best"]
+    assert found["form"] == "reach"
+    assert "| `reach` | made up | `reach_deg` |" in found["table"]

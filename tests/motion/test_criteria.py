@@ -12,19 +12,16 @@ from oracles import arm as twin
 from zerorev.errors import InputError
 from zerorev.files.io import read_job, read_plan, write_plan
 from zerorev.files.plan_data import plan_data
-from zerorev.model import job
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, Measures, Plan
+from zerorev.model.measures import CRITERIA, Measures
+from zerorev.model.plan import Finding, Plan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
 from zerorev.motion.criteria import (
-    CRITERIA,
     Objective,
-    PlungeRotation,
     Reversals,
-    Travel,
     compliance,
     manipulability,
     measure,
@@ -38,7 +35,7 @@ from zerorev.planning.hole import plan
 
 STIFFNESS = (4e4, 5e4, 3e4, 1e4, 1.2e4, 6e3)
 BENT = Tool.from_mm_deg((30, -40, 150), (10, -120, 25))
-ALL = tuple((name, 1.0) for name in job.CRITERIA)
+ALL = tuple((name, 1.0) for name in CRITERIA)
 
 
 def measured(robot, tool, position, profile=None, **settings):
@@ -151,7 +148,7 @@ class TestFigures:
 class TestCosts:
     def test_the_job_knows_them_all_and_each_reads_its_own_figure(self):
         names = [field.name for field in fields(Measures)]
-        assert tuple(CRITERIA) == job.CRITERIA == tuple(names)
+        assert tuple(CRITERIA) == tuple(names)
         base = dict.fromkeys(names, 0.25)
         for name, criterion in CRITERIA.items():
             for other in names:
@@ -160,7 +157,7 @@ class TestCosts:
 
     @pytest.mark.parametrize("name", ["margin", "limit_distance", "manipulability"])
     def test_of_some_more_is_better(self, name):
-        poor, good = (Measures(**dict.fromkeys(job.CRITERIA, value)) for value in (0.1, 0.2))
+        poor, good = (Measures(**dict.fromkeys(CRITERIA, value)) for value in (0.1, 0.2))
         assert CRITERIA[name](good) < CRITERIA[name](poor)
 
     def test_published_motions_cost_between_0_and_about_1(self, robot, tool, position):
@@ -170,7 +167,7 @@ class TestCosts:
 
     def test_is_a_weighted_sum(self, robot, tool, positions):
         figures = measured(robot, tool, positions[0])
-        mixed = Objective(((0.3, PlungeRotation()), (0.7, Travel())))
+        mixed = Objective(((0.3, CRITERIA["plunge_rotation"]), (0.7, CRITERIA["travel"])))
         by_hand = 0.3 * figures.plunge_rotation / np.pi + 0.7 * figures.travel / (12 * np.pi)
         assert mixed(figures) == pytest.approx(by_hand)
         asked = Settings(weights=(("plunge_rotation", 0.3), ("travel", 0.7)))
@@ -179,7 +176,7 @@ class TestCosts:
 
     def test_of_many_motions_at_once(self, robot, tool, positions):
         several = [measured(robot, tool, position, joint_stiffness=STIFFNESS) for position in positions]
-        arrays = Measures(*(np.array([getattr(one, name) for one in several]) for name in job.CRITERIA))
+        arrays = Measures(*(np.array([getattr(one, name) for one in several]) for name in CRITERIA))
         cost = objective_of(Settings(weights=ALL, joint_stiffness=STIFFNESS))
         np.testing.assert_allclose(cost(arrays), [cost(one) for one in several])
 
@@ -274,7 +271,7 @@ class TestFiles:
         write_plan(whole, tmp_path / "plan.json")
         again = read_plan(tmp_path / "plan.json")
         assert again.settings == asked.settings
-        for name in job.CRITERIA:
+        for name in CRITERIA:
             assert getattr(again.holes[0].measures, name) == pytest.approx(getattr(figures, name), rel=1e-10)
 
     def test_a_plan_without_the_figures_is_still_read(self, tmp_path):

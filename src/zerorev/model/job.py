@@ -9,15 +9,11 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
 from zerorev.model.hole import Hole
-from zerorev.model.measures import CRITERIA as STATED
 from zerorev.model.robot import Robot
-from zerorev.model.settings import Objective, Settings
+from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 
-__all__ = ["CRITERIA", "Job", "Objective", "Settings"]
-
-CRITERIA = tuple(STATED)
-"""Their names."""
+__all__ = ["Job", "Settings"]
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.measures import Measures, V
+from zerorev.model.measures import Measures
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.shown import Shown
@@ -29,13 +29,11 @@ __all__ = [
     "Finding",
     "HolePlan",
     "Level",
-    "Measures",
     "Motion",
     "Optimality",
     "Plan",
     "Score",
     "Strokes",
-    "V",
     "Verification",
     "Within",
     "named_holes",

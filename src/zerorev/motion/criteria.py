@@ -1,6 +1,6 @@
-"""What a motion is judged by beside its reversals: one small class a criterion, and their weighted sum.
+"""What a motion is judged by beside its reversals: the figure of each criterion, and their weighted sum.
 
-`measure` takes what the criteria need of an evaluated motion, in its own units; a criterion turns one of these figures
+`measure` computes the figures of an evaluated motion, in SI; a criterion (`zerorev.model.measures`) turns its figure
 into a cost that is about 0 for the best and about 1 for a poor motion, so that weights mean the same for all of them.
 Reversals and the motion threshold are not weighed against any of this: they come first (theory §3.1). The thesis weighs
 them by 6/7 against 1/7 (eq. 4.7), which comes to the same, and `thesis_objective` is that sum.
@@ -8,14 +8,16 @@ them by 6/7 against 1/7 (eq. 4.7), which comes to the same, and `thesis_objectiv
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import Protocol
+from functools import cached_property
 
 import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
-from zerorev.model.plan import Measures, Score, V
+from zerorev.model.measures import CRITERIA, Criterion, Measures, V
+from zerorev.model.plan import Score
 from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, steady_rates
@@ -23,131 +25,66 @@ from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.motion.kinematics import jacobian
 
 __all__ = [
-    "CRITERIA",
-    "ComplianceAxial",
-    "ComplianceLateral",
-    "Criterion",
-    "LimitDistance",
-    "Manipulability",
-    "Margin",
+    "AT_POSES",
     "Objective",
-    "PlungeRotation",
+    "Poses",
     "Reversals",
-    "ToolSpeedChange",
-    "Travel",
     "compliance",
     "from_singular",
     "manipulability",
     "measure",
     "objective_of",
     "thesis_objective",
+    "worst",
 ]
 
-SAMPLES = 400  # poses of a motion at which the compliance and the manipulability are looked at
-
-
-class Criterion(Protocol):
-    """One aspect of a motion, as a number between 0 (best) and about 1."""
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion, or of each of many."""
+SAMPLES = 400  # poses of a motion at which the criteria of a pose are computed
 
 
 @dataclass(frozen=True)
-class Travel:
-    """Share of six full turns: theta_trv / (6 * 360 deg) (eq. 4.7, second term)."""
+class Poses:
+    """The arm at many points, of one motion or of many.
 
-    scale: float = 12 * np.pi  # [rad]
+    Attributes:
+        drilling: robot, tool and hole.
+        settings: for the stiffness of the joints.
+        joints: controller angles [rad], shape (..., 6).
+    """
 
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return motion.travel / self.scale
+    drilling: Drilling
+    settings: Settings
+    joints: Array
 
-
-@dataclass(frozen=True)
-class Margin:
-    """How slow the slowest joint is: 1 at rest, 0 where it moves by 0.1 deg/mm, below 0 where it moves faster."""
-
-    scale: float = float(np.deg2rad(100.0))  # [rad/m]
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return 1 - motion.margin / self.scale
-
-
-@dataclass(frozen=True)
-class PlungeRotation:
-    """Share of half a turn by which the tool is spun while it cuts."""
-
-    scale: float = np.pi  # [rad]
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return motion.plunge_rotation / self.scale
+    @cached_property
+    def compliance(self) -> tuple[Array, Array]:
+        """Give of the tip along and across the drill axis [m/N], each (...,); NaN where no stiffness is known."""
+        stiffness, direction = self.settings.joint_stiffness, self.drilling.hole.direction
+        if stiffness is None:
+            unknown = np.full(self.joints.shape[:-1], np.nan)
+            return unknown, unknown
+        return compliance(jacobian(self.drilling.robot, self.drilling.tool, self.joints), stiffness, direction)
 
 
-@dataclass(frozen=True)
-class ToolSpeedChange:
-    """Change of the drill's speed by the spin, counted in 10 rev/min, the thesis' example (eq. 5.4)."""
-
-    scale: float = np.pi / 3  # [rad/s]
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return motion.tool_speed_change / self.scale
-
-
-@dataclass(frozen=True)
-class LimitDistance:
-    """How near a joint comes to its limits: 1 at a limit, 0 in the middle of its range."""
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return 1 - motion.limit_distance
-
-
-@dataclass(frozen=True)
-class ComplianceAxial:
-    """Greatest give of the tip to a thrust along the drill axis, counted in 10 um/N."""
-
-    scale: float = 10e-6  # [m/N]
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return motion.compliance_axial / self.scale
-
-
-@dataclass(frozen=True)
-class ComplianceLateral:
-    """Greatest give of the tip to a force across the drill axis, the way it gives most, counted in 10 um/N."""
-
-    scale: float = 10e-6  # [m/N]
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return motion.compliance_lateral / self.scale
-
-
-@dataclass(frozen=True)
-class Manipulability:
-    """How near the arm comes to a singular posture: 1 in one, and never 0."""
-
-    def __call__(self, motion: Measures[V]) -> V:
-        """Cost of the motion."""
-        return 1 - motion.manipulability
-
-
-CRITERIA: dict[str, Criterion] = {
-    "travel": Travel(),
-    "margin": Margin(),
-    "plunge_rotation": PlungeRotation(),
-    "tool_speed_change": ToolSpeedChange(),
-    "limit_distance": LimitDistance(),
-    "compliance_axial": ComplianceAxial(),
-    "compliance_lateral": ComplianceLateral(),
-    "manipulability": Manipulability(),
+AT_POSES: dict[str, Callable[[Poses], Array]] = {
+    "compliance_axial": lambda poses: poses.compliance[0],
+    "compliance_lateral": lambda poses: poses.compliance[1],
+    "manipulability": lambda poses: manipulability(poses.drilling.robot, poses.joints),
 }
-"""The criteria by the names that a job file gives them."""
+"""The criteria of a pose, whose figure of a motion is that of its worst pose: figures [SI], shape (...,)."""
+
+
+def worst(poses: Poses, names: Iterable[str] = tuple(AT_POSES)) -> dict[str, Array]:
+    """Of criteria of a pose the worst figure over the last axis of the poses, each (...,).
+
+    Args:
+        poses: of motions, or of legs.
+        names: of the criteria.
+    """
+    figures = {name: AT_POSES[name](poses) for name in names}
+    return {
+        name: each.min(axis=-1) if CRITERIA[name].more_is_better else each.max(axis=-1)
+        for name, each in figures.items()
+    }
 
 
 @dataclass(frozen=True)
@@ -189,21 +126,14 @@ def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> M
     profile, limits, steady = motion.profile, drilling.robot.limits, steady_rates(score, settings)
     plunge = slice(profile.corner)
     points = profile.at(sample_distances(profile, SAMPLES))
-    joints = joints_along(drilling, motion.branch, *points)
-    axial = lateral = np.full(1, np.nan)
-    if settings.joint_stiffness is not None:
-        axial, lateral = compliance(
-            jacobian(drilling.robot, drilling.tool, joints), settings.joint_stiffness, drilling.hole.direction
-        )
+    poses = Poses(drilling, settings, joints_along(drilling, motion.branch, *points))
     return Measures(
         travel=score.travel,
         margin=float(steady.min()) if steady.size else 0.0,
         plunge_rotation=float(np.abs(np.diff(profile.psi)[plunge]).sum()),
         tool_speed_change=float(np.abs(profile.twist_rate[plunge]).max() * settings.feed_plunge),
         limit_distance=float((2 * score.limit_distance / (limits.upper - limits.lower)).min()),
-        compliance_axial=float(axial.max()),
-        compliance_lateral=float(lateral.max()),
-        manipulability=float(manipulability(drilling.robot, joints).min()),
+        **{name: float(figure) for name, figure in worst(poses).items()},
     )
 
 
@@ -276,4 +206,4 @@ def thesis_objective(evaluation: Evaluation) -> float:
     score = evaluation.score
     if score is None:
         return float(len({finding.kind for finding in evaluation.findings}))
-    return 6 / 7 * Reversals()(score) + 1 / 7 * score.travel / Travel().scale
+    return 6 / 7 * Reversals()(score) + 1 / 7 * score.travel / CRITERIA["travel"].scale

@@ -20,12 +20,11 @@ from zerorev.kernels.layout import TwistPlane
 from zerorev.kernels.legs import NIL
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
-from zerorev.model.plan import Measures
+from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.robot import JointLimits
-from zerorev.motion.criteria import compliance, manipulability, objective_of
+from zerorev.motion.criteria import AT_POSES, Poses, objective_of, worst
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import JUMP, turns_within
-from zerorev.motion.kinematics import jacobian
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
@@ -69,7 +68,11 @@ class Sides(NamedTuple):
 
 
 class Legs(NamedTuple):
-    """Legs that will do, in order of their rows, and what they are worth; shape (n,), extents (n, 6)."""
+    """Legs that will do, in order of their rows, and what they are worth; shape (n,), extents (n, 6).
+
+    `at_poses` has a column for each criterion of a pose (`zerorev.motion.criteria.AT_POSES`), NaN where it does not
+    weigh.
+    """
 
     row: Counts
     slope: Array
@@ -77,9 +80,7 @@ class Legs(NamedTuple):
     travel: Array
     low: Array
     high: Array
-    axial: Array
-    lateral: Array
-    manipulability: Array
+    at_poses: Array
 
     def of(self, chosen: Mask | slice) -> Legs:
         """Some of them."""
@@ -204,14 +205,11 @@ class LegPairs:
         ]
         joints = np.unwrap(joints, axis=1)
         steps = np.abs(np.diff(joints, axis=1))
-        axial = lateral = np.full(row.shape, np.nan)
-        if {"compliance_axial", "compliance_lateral"} & set(dict(self.settings.weights)):
-            J = jacobian(self.drilling.robot, self.drilling.tool, joints)
-            give = compliance(J, self.settings.joint_stiffness, self.drilling.hole.direction)
-            axial, lateral = (each.max(axis=1) for each in give)
-        dexterity = manipulability(self.drilling.robot, joints).min(axis=1)
-        legs = Legs(row, slope, margin, steps.sum(axis=(1, 2)), joints.min(axis=1), joints.max(axis=1),
-                     axial, lateral, dexterity)  # fmt: skip
+        weighed = [name for name in AT_POSES if name in dict(self.settings.weights)]
+        figures, unweighed = worst(Poses(self.drilling, self.settings, joints), weighed), np.full(row.shape, np.nan)
+        at_poses = np.stack([figures.get(name, unweighed) for name in AT_POSES], axis=-1)
+        travel = steps.sum(axis=(1, 2))
+        legs = Legs(row, slope, margin, travel, joints.min(axis=1), joints.max(axis=1), at_poses)
         return legs.of(steps.max(axis=(1, 2)) < JUMP)
 
     def paired(self, legs: Legs, other: Legs) -> Array:
@@ -228,9 +226,10 @@ class LegPairs:
             plunge_rotation=gentler * self.drilling.hole.depth,
             tool_speed_change=gentler * self.settings.feed_plunge,
             limit_distance=(2 * distance / (limits.upper - limits.lower)).min(axis=-1),
-            compliance_axial=np.maximum.outer(legs.axial, other.axial),
-            compliance_lateral=np.maximum.outer(legs.lateral, other.lateral),
-            manipulability=np.minimum.outer(legs.manipulability, other.manipulability),
+            **{
+                name: (np.minimum if CRITERIA[name].more_is_better else np.maximum).outer(one, two)
+                for name, one, two in zip(AT_POSES, legs.at_poses.T, other.at_poses.T, strict=True)
+            },
         )
         return np.where(fits.all(axis=-1), objective_of(self.settings)(measures), np.inf)
 

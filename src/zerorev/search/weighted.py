@@ -18,7 +18,7 @@ from typing import get_args
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.job import Objective, Settings
+from zerorev.model.settings import Objective, Settings
 from zerorev.motion.criteria import measure, objective_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
