@@ -34,6 +34,13 @@ def test_every_public_name_is_documented(site):
     assert [name for name in zerorev.__all__ if f'id="zerorev.{name}"' not in built] == []
 
 
+def test_stated_attributes_are_in_the_reference_of_python(site):
+    built = (site / "reference/python.html").read_text(encoding="utf-8")
+    for words in ("least motion of every joint along the path", "angle moved [rad]", "None: not looked for"):
+        assert words in built
+    assert "Annotated" not in built
+
+
 def _commands() -> list[tuple[str, str]]:
     return [
         (page.name, line.strip().removeprefix("$ "))

@@ -29,7 +29,7 @@ class Settings:
     min_rate: Annotated[
         float,
         Number(
-            "least motion of every joint per mm of path; 0 switches it off",
+            "least motion of every joint along the path; 0 switches it off",
             DEG_PER_MM,
             least=0,
             note="The motion threshold; joints that reverse are not counted (theory §5)",
