@@ -113,7 +113,7 @@ class BaselineForm(Form):
 
 @keys_of(Verification, needed=True)
 class VerifiedForm(Form):
-    """What the independent check looked at, and what it found."""
+    """What the independent check examined, and what it found."""
 
 
 @keys_of(Certificate, needed=True)
@@ -148,7 +148,7 @@ class PlanHole(Form):
         description="a mapping of standoff_mm, psi_deg and branch as the job fixed them; or null: it fixed none",
     )
     status: Literal["planned", "evaluated", "infeasible"] = Field(
-        description="planned (searched for), evaluated (given and looked at) or infeasible (no motion at all)"
+        description="planned (searched for), evaluated (given, not searched for) or infeasible (no motion at all)"
     )
     branch: Branch | None = Field(description="a whole number from 0 to 7: the IK branch")
     standoff_mm: StandoffsMm | None = Field(description="three numbers or more [mm]: breakpoints in order of motion")

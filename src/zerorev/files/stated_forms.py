@@ -56,7 +56,7 @@ def keys_of(noun: type, *, needed: bool = False, or_null: bool = False) -> Calla
 
     Args:
         noun: a dataclass.
-        needed: whether a file has to have all of them, whatever the defaults of the noun, but those added later.
+        needed: whether a file has to have all of them, regardless of the defaults of the noun, but those added later.
         or_null: whether all may be null, because there is no such noun.
     """
 
@@ -91,7 +91,7 @@ def _word_of(noun: type, weighed: Weighed) -> Stated:
 
 
 def _key(each: Stated, needed: bool) -> tuple[Any, Any]:
-    """The type of a key and the rest that pydantic is told of it."""
+    """The type of a key, and its default and description."""
     accepted = _accepted(each)
     default: dict[str, Any] = {}
     if each.added or each.before is not UNSET:

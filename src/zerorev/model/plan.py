@@ -140,7 +140,7 @@ class Baseline:
 
 @dataclass(frozen=True)
 class Verification:
-    """What the independent check looked at, and what it found.
+    """What the independent check examined, and what it found.
 
     Attributes:
         subject: fingerprint of what was examined (`zerorev.verify.check.subject`); None where that is not known, as of
@@ -148,8 +148,8 @@ class Verification:
     """
 
     passed: Annotated[bool, Switch("whether the plan's claims hold")]
-    samples: Annotated[int, Count("points looked at on the two legs")]
-    blend_samples: Annotated[int, Count("points looked at on the blended corner")]
+    samples: Annotated[int, Count("points examined on the two legs")]
+    blend_samples: Annotated[int, Count("points examined on the blended corner")]
     reversals_per_joint: Annotated[tuple[int, ...], SixCounts("as counted by the check")]
     max_position_error: Annotated[float, Figure("the tip off its path", MM, null=math.nan, none="undefined")]
     max_rotation_error: Annotated[float, Figure("the tool off its pose", DEG, null=math.nan, none="undefined")]
@@ -159,7 +159,7 @@ class Verification:
     min_limit_distance: Annotated[
         float, Figure("least distance to a joint limit", DEG, null=math.nan, none="undefined")
     ]
-    failures: Annotated[tuple[str, ...], Texts("one sentence a failed check")] = ()
+    failures: Annotated[tuple[str, ...], Texts("one sentence per failed check")] = ()
     subject: str | None = field(default=None, compare=False, repr=False)
 
 
@@ -238,7 +238,7 @@ class HolePlan(Shown):
 
     Attributes:
         hole: what was asked.
-        status: `planned` (searched for), `evaluated` (given and looked at), `infeasible` (no motion at all).
+        status: `planned` (searched for), `evaluated` (given, not searched for), `infeasible` (no motion at all).
         motion: the motion, or None where there is none.
         score: what the motion does to the joints, or None.
         baseline: the same with constant spin, or None where that cannot be run.
