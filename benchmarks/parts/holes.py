@@ -26,9 +26,8 @@ from benchmarks.peers.objective import NumbaObjective, graded
 from benchmarks.peers.swarm import ITERATIONS, PARTICLES, swarm
 from benchmarks.scorer import SAMPLES, Rescored, compare, rescore, words
 from benchmarks.table import Section
-from zerorev.planning.job import workers_for
 from zerorev.thesis.methods import BUDGET
-from zerorev.workers import Workers
+from zerorev.workers import Machines, Workers
 
 __all__ = ["run"]
 
@@ -98,7 +97,7 @@ class Seen:
 
 def run(options: Options) -> Section:
     """Hole after hole, or several at a time; those that an earlier run finished are taken from its file."""
-    workers, made_with = workers_for(options.holes, options.workers), _made_with(options.peer_seeds)
+    made_with = _made_with(options.peer_seeds)
     finished = Finished(options.folder / "holes.jsonl", made_with, key=lambda entry: entry["seed"])
     if finished.known:
         print(f"  going on after {len(finished.known)} finished holes", flush=True)
@@ -109,7 +108,7 @@ def run(options: Options) -> Section:
             holes.append(hole)
             yield hole, finished.known.get(hole.seed)
 
-    with Workers(partial(_look_at, options.peer_seeds), workers) as processes:
+    with Workers(partial(_look_at, options.peer_seeds), Machines(options.workers)) as processes:
         for each in processes.map(asked()):
             if asdict(each) != finished.known.get(each.seed):
                 finished.add(asdict(each))

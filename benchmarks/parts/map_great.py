@@ -19,9 +19,10 @@ from benchmarks.timing import duration
 from benchmarks.watched import Cost, watched
 from zerorev.files.map_file import read_map_file
 from zerorev.maps.cells import STATUS
-from zerorev.maps.run import local, run_map
+from zerorev.maps.run import run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model._arrays import Array
+from zerorev.workers import HERE
 
 __all__ = ["run"]
 
@@ -63,7 +64,7 @@ def run(options: Options) -> Section:
     """Make maps of more and more cells of the same box; what was broken off is gone on with."""
     folder = options.folder / f"map_great_{options.cells}"
     folder.mkdir(parents=True, exist_ok=True)
-    run_map(thinned(1), folder / "first.zarr", local(1))  # so that the kernels are compiled
+    run_map(thinned(1), folder / "first.zarr", HERE)  # so that the kernels are compiled
     ran = [_ran(folder, options.cells // smaller) for smaller in SMALLER]
     shutil.rmtree(folder)
     common = [_common(less, more) for less, more in pairwise(ran)]

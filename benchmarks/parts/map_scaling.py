@@ -16,9 +16,9 @@ from benchmarks.box import content, thinned
 from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import duration
-from zerorev.maps.cluster import cluster
-from zerorev.maps.run import Runner, local, run_map
+from zerorev.maps.run import run_map
 from zerorev.model.map_task import MapTask
+from zerorev.workers import HERE, Machines
 
 __all__ = ["run"]
 
@@ -44,8 +44,8 @@ class _Made:
 def run(options: Options) -> Section:
     """Make the same map in each way, each from an empty folder."""
     task = thinned(min(CELLS, options.cells))
-    _made("", thinned(5), local(1))  # so that the kernels are compiled
-    made = [_made("one process", task, local(1)), _made("two local workers", task, local(2))]
+    _made("", thinned(5), HERE)  # so that the kernels are compiled
+    made = [_made("one process", task, HERE), _made("two local workers", task, Machines(2))]
     lost, failures = _on_a_cluster(task)
     made.append(lost)
     failures += [f"{each.how}: other bytes than on one process" for each in made if each.content != made[0].content]
@@ -79,17 +79,17 @@ def _row(made: _Made, first: _Made, cells: int) -> tuple[str, ...]:
     return made.how, duration(made.seconds), f"{cells / made.seconds:.1f}", f"{first.seconds / made.seconds:.2f}", same
 
 
-def _made(how: str, task: MapTask, runner: Runner, progress: Callable[[int, int], None] | None = None) -> _Made:
+def _made(how: str, task: MapTask, machines: Machines, progress: Callable[[int, int], None] | None = None) -> _Made:
     with TemporaryDirectory() as folder:
         began = time.perf_counter()
-        run_map(task, Path(folder) / "map.zarr", runner, progress)
+        run_map(task, Path(folder) / "map.zarr", machines, progress)
         return _Made(how, time.perf_counter() - began, content(Path(folder)))
 
 
 def _on_a_cluster(task: MapTask) -> tuple[_Made, list[str]]:
     """The map on a cluster that loses a worker, and what did not go as it should."""
     lost: list[int] = []
-    with _dask() as (address, workers), cluster(address) as runner:
+    with _dask() as (address, workers):
 
         def lose_one(done: int, of: int) -> None:
             if 2 * done >= of and not lost:
@@ -97,7 +97,7 @@ def _on_a_cluster(task: MapTask) -> tuple[_Made, list[str]]:
                 lost.append(of - done)
 
         how = f"dask.distributed, {CLUSTER_WORKERS} workers, one killed half-way"
-        made = _made(how, task, runner, lose_one)
+        made = _made(how, task, Machines(scheduler=address), lose_one)
         left = sum(worker.poll() is None for worker in workers)
     failures = [] if lost and lost[0] else ["no worker was killed before the map was finished"]
     if left != CLUSTER_WORKERS - 1:

@@ -15,12 +15,13 @@ from benchmarks.parts import Options
 from benchmarks.table import Goal, Section
 from benchmarks.timing import Timed, duration, in_turns
 from zerorev.files.map_file import read_map_file
-from zerorev.maps.run import local, run_map
+from zerorev.maps.run import run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model._arrays import Array
 from zerorev.model.map_task import MapTask
 from zerorev.thesis.reproduce.published import TABLE_5, TABLE_5_Y_MM, TABLE_5_Z_MM
 from zerorev.thesis.reproduce.workspace import PLANES_MM, SPACING_MM
+from zerorev.workers import HERE, Machines
 
 __all__ = ["run"]
 
@@ -92,20 +93,20 @@ def _figures(plane: MapTask, spacing: float) -> MapTask:
 
 def _run(task: MapTask, workers: int, _: int) -> float:
     with tempfile.TemporaryDirectory() as folder:
-        run_map(task, Path(folder) / "map.zarr", local(workers))
+        run_map(task, Path(folder) / "map.zarr", Machines(workers))
     return 0.0
 
 
 def _content(task: MapTask, workers: int) -> dict[str, bytes]:
     with tempfile.TemporaryDirectory() as folder:
-        run_map(task, Path(folder) / "map.zarr", local(workers))
+        run_map(task, Path(folder) / "map.zarr", Machines(workers))
         return content(Path(folder))
 
 
 def _depths(task: MapTask) -> Array:
     """Deepest strokes [mm], a row a Z and a column a Y, 0 where there is none."""
     with tempfile.TemporaryDirectory() as folder:
-        run_map(task, Path(folder) / "map.zarr", local(1))
+        run_map(task, Path(folder) / "map.zarr", HERE)
         found = read_workspace_map(Path(folder) / "map.zarr")
     return np.nan_to_num(found["deepest_mm"].values[0, :, :, 0].T)
 

@@ -10,7 +10,7 @@ import pytest
 from zerorev.errors import InputError
 from zerorev.maps.cells import STATUS, answer, columns_of
 from zerorev.maps.replan import hole_of, job_of, question_of
-from zerorev.maps.run import local, run_map
+from zerorev.maps.run import run_map
 from zerorev.maps.workspace import read_workspace_map
 from zerorev.model.job import Settings
 from zerorev.model.map_task import MapTask, Question, cone
@@ -21,6 +21,7 @@ from zerorev.planning.hole import plan
 from zerorev.planning.job import plan_job
 from zerorev.search.deepest import deepest_stroke
 from zerorev.verify.certificate.certify import certify_hole
+from zerorev.workers import HERE
 
 FREE = Settings(min_rate=0.0)
 AXES = (np.array([450.0, 500.0]), np.array([0.0, 300.0]), np.array([700.0, 800.0]))
@@ -28,7 +29,7 @@ ALONG_X = np.array([[1.0, 0.0, 0.0]])
 
 
 def mapped(question, folder, axes=AXES, directions=ALONG_X, **kinds):
-    run_map(MapTask(question, axes, directions, **kinds), folder / "map.zarr", local(1))
+    run_map(MapTask(question, axes, directions, **kinds), folder / "map.zarr", HERE)
     return read_workspace_map(folder / "map.zarr")
 
 

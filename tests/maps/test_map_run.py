@@ -23,9 +23,10 @@ from zerorev.cli import main
 from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.maps import run
 from zerorev.maps.cells import answer
-from zerorev.maps.run import local, run_map
+from zerorev.maps.run import run_map
 from zerorev.maps.workspace import MapStore, read_workspace_map
 from zerorev.model.map_task import MapTask, Question
+from zerorev.workers import HERE, Machines
 
 CLI = [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main())"]
 MAP = {
@@ -47,7 +48,7 @@ def task(robot, tool):
 def straight(task, tmp_path_factory):
     """The bytes of a map that was run in one go."""
     folder = tmp_path_factory.mktemp("straight")
-    run_map(task, folder / "map.zarr", local(1))
+    run_map(task, folder / "map.zarr", HERE)
     return content(folder / "map.zarr")
 
 
@@ -55,17 +56,20 @@ def content(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-def stopped_after(count, told):
-    """A runner that is interrupted after so many chunks; notes those it answers."""
+def stopped_after(count, told, task, path, *progress):
+    """Run a map that is interrupted after so many chunks; notes those it answers."""
+    mine = []
 
-    def runner(question, chunks, missing):
-        for done, number in enumerate(missing):
-            if done == count:
-                raise KeyboardInterrupt
-            told.append(number)
-            yield number, answer(question, chunks.block(number))
+    def answering(question, block):
+        if len(mine) == count:
+            raise KeyboardInterrupt
+        mine.append(block.number)
+        told.append(block.number)
+        return answer(question, block)
 
-    return runner
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(run, "answer", answering)
+        return run_map(task, path, HERE, *progress)
 
 
 class TestResume:
@@ -73,7 +77,7 @@ class TestResume:
         path, told, progress = tmp_path / "map.zarr", [], []
         for _ in range(100):
             try:
-                ran = run_map(task, path, stopped_after(5, told), lambda *done: progress.append(done))
+                ran = stopped_after(5, told, task, path, lambda *done: progress.append(done))
             except KeyboardInterrupt:
                 continue
             break
@@ -84,16 +88,16 @@ class TestResume:
 
     def test_a_finished_map_is_left_as_it_is(self, task, straight, tmp_path):
         path, told = tmp_path / "map.zarr", []
-        run_map(task, path, local(1))
+        run_map(task, path, HERE)
         times = {file: file.stat().st_mtime_ns for file in path.rglob("*")}
-        ran = run_map(task, path, stopped_after(0, told))
+        ran = stopped_after(0, told, task, path)
         assert ran.before == ran.chunks
         assert {file: file.stat().st_mtime_ns for file in path.rglob("*")} == times
 
     @pytest.mark.parametrize("how", ["flipped", "cut", "emptied", "deleted", "zeroed"])
     def test_a_damaged_chunk_is_found_and_only_it_is_answered_again(self, how, task, straight, tmp_path):
         path, told = tmp_path / "map.zarr", []
-        run_map(task, path, local(1))
+        run_map(task, path, HERE)
         chunk = random.Random(how).choice([f for f in sorted(path.rglob("*")) if f.is_file() and "/c/" in str(f)
                                            and f.parent.parent.name != "map.zarr" and "_mm/" not in str(f)
                                            and "direction_" not in str(f)])  # fmt: skip
@@ -103,23 +107,23 @@ class TestResume:
         else:
             data[len(data) // 2] ^= 4
             chunk.write_bytes({"flipped": data, "cut": data[:-3], "emptied": b"", "zeroed": bytes(len(data))}[how])
-        run_map(task, path, stopped_after(99, told))
+        stopped_after(99, told, task, path)
         assert len(told) == 1
         assert content(path) == straight
 
     def test_what_a_kill_left_half_written_goes(self, task, straight, tmp_path):
         path = tmp_path / "map.zarr"
         with pytest.raises(KeyboardInterrupt):
-            run_map(task, path, stopped_after(3, []))
+            stopped_after(3, [], task, path)
         torn = next(path.glob("branch/c/**/0")).parent / "1.0123456789abcdef.partial"
         torn.write_bytes(b"half")
-        run_map(task, path, local(1))
+        run_map(task, path, HERE)
         assert content(path) == straight
 
     def test_an_unfinished_map_can_be_read(self, task, tmp_path):
         path = tmp_path / "map.zarr"
         with pytest.raises(KeyboardInterrupt):
-            run_map(task, path, stopped_after(3, []))
+            stopped_after(3, [], task, path)
         found = read_workspace_map(path)
         assert 0 < (found["status"].values == -1).sum() < task.cells
 
@@ -149,10 +153,10 @@ class TestResume:
 def test_another_map_is_refused_with_the_difference_named(change, said, task, tmp_path):
     path = tmp_path / "map.zarr"
     with pytest.raises(KeyboardInterrupt):
-        run_map(task, path, stopped_after(2, []))
+        stopped_after(2, [], task, path)
     before = content(path)
     with pytest.raises(InputError, match="is another map") as refused:
-        run_map(change(task), path, local(1))
+        run_map(change(task), path, HERE)
     assert said in str(refused.value)
     assert content(path) == before
 
@@ -161,22 +165,22 @@ def test_what_is_no_map_is_left_alone(task, tmp_path):
     (tmp_path / "notes").mkdir()
     (tmp_path / "notes" / "notes.txt").write_text("mine")
     with pytest.raises(InputError, match="no folder of zarr"):
-        run_map(task, tmp_path / "notes", local(1))
+        run_map(task, tmp_path / "notes", HERE)
     (tmp_path / "file").write_text("mine")
     with pytest.raises(OutputError, match="it is a file"):
-        run_map(task, tmp_path / "file", local(1))
+        run_map(task, tmp_path / "file", HERE)
     with pytest.raises(OutputError, match="does not exist"):
-        run_map(task, tmp_path / "none" / "map.zarr", local(1))
+        run_map(task, tmp_path / "none" / "map.zarr", HERE)
     import xarray
 
     xarray.Dataset({"a": ("x", [1.0])}).to_zarr(tmp_path / "other.zarr", consolidated=False)
     with pytest.raises(InputError, match="not a workspace map"):
-        run_map(task, tmp_path / "other.zarr", local(1))
+        run_map(task, tmp_path / "other.zarr", HERE)
 
 
 def test_two_runs_do_not_write_the_same(task, tmp_path):
     with MapStore(tmp_path / "map.zarr", task), pytest.raises(OutputError, match="another run is writing it"):
-        run_map(task, tmp_path / "map.zarr", local(1))
+        run_map(task, tmp_path / "map.zarr", HERE)
 
 
 class TestDisk:
@@ -184,7 +188,7 @@ class TestDisk:
         usage = namedtuple("usage", "total used free")
         monkeypatch.setattr(shutil, "disk_usage", lambda path: usage(2**40, 2**40, 100_000))
         with pytest.raises(OutputError, match=r"needs up to .* MiB, and the disk has 0\.1 MiB left"):
-            run_map(task, tmp_path / "map.zarr", local(1))
+            run_map(task, tmp_path / "map.zarr", HERE)
         assert list(tmp_path.iterdir()) == []
 
     def test_that_fills_up_on_the_way_is_survived(self, task, straight, tmp_path, monkeypatch):
@@ -201,18 +205,16 @@ class TestDisk:
         with monkeypatch.context() as patch:
             patch.setattr(_local, "_put", put)
             with pytest.raises(ZerorevError, match=r"No space left on device; what is finished is kept, and the same"):
-                run_map(task, path, local(1))
+                run_map(task, path, HERE)
         told = []
-        run_map(task, path, stopped_after(99, told))
+        stopped_after(99, told, task, path)
         assert 0 < len(told) < len(straight)
         assert content(path) == straight
 
 
 @pytest.mark.parametrize("workers", [2, 3])
-def test_on_several_processes_it_is_the_same(workers, task, straight, tmp_path, monkeypatch):
-    monkeypatch.setattr(run, "BEGINNING", 0.0)
-    monkeypatch.setattr(run, "WORTH_WORKERS", -1.0)
-    run_map(task, tmp_path / "map.zarr", local(workers))
+def test_on_several_processes_it_is_the_same(workers, task, straight, tmp_path):
+    run_map(task, tmp_path / "map.zarr", Machines(workers))
     assert content(tmp_path / "map.zarr") == straight
 
 
@@ -281,7 +283,7 @@ class TestCommand:
 
         with monkeypatch.context() as patch:
             patch.setattr(run, "answer", interrupted)
-            assert main(["map", str(map_file), "-o", str(target)]) == cli.INTERRUPTED
+            assert main(["map", str(map_file), "-o", str(target), "--workers", "1"]) == cli.INTERRUPTED
         assert f"what is finished is kept in {target}; the same command goes on from there" in capsys.readouterr().err
         assert main(["map", str(map_file), "-o", str(target)]) == cli.FINE
         assert "going on after 9 of 54 cells" in capsys.readouterr().err

@@ -26,6 +26,7 @@ from zerorev.placement.freedom import AXES, Freedom, frame_at, job_at
 from zerorev.placement.search import KEPT, place, placements
 from zerorev.report.words.placement import placement_data
 from zerorev.search.deepest import Deepest, deepest_stroke
+from zerorev.workers import Machines
 
 OFF = Settings(min_rate=0.0)
 TURNED = transform(rotation_rpy(0.1, -0.2, 0.5), np.array([0.5, 0.3, 0.8]))
@@ -46,9 +47,9 @@ def planted(monkeypatch):
     def plant(rule):
         asked = []
 
-        def deepest(robot, tool, hole, settings):
-            asked.append(hole.id)
-            return Deepest(max(0.0, float(rule(hole))))
+        def deepest(drilling, settings):
+            asked.append(drilling.hole.id)
+            return Deepest(max(0.0, float(rule(drilling.hole))))
 
         monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
         return asked
@@ -225,7 +226,7 @@ class TestReal:
         job = pattern(robot, tool, HIGH, 0.08, ROW[:2])
         freedom = Freedom(z=(-0.2, -0.1))
         one = place(job, freedom, grid=5, cells=3)
-        two = place(job, freedom, grid=5, cells=3, workers=2)
+        two = place(job, freedom, grid=5, cells=3, machines=Machines(2))
         assert json.dumps(placement_data(job, freedom, one)) == json.dumps(placement_data(job, freedom, two))
         lower = job_at(job, np.array([0.0, 0, -0.13, 0]))
         again = place(lower, Freedom(z=(-0.07, 0.03)), grid=5)
@@ -284,11 +285,11 @@ class TestCommand:
     def test_ctrl_c_keeps_what_is_known(self, job_file, tmp_path, capsys, monkeypatch):
         calls = []
 
-        def deepest(robot, tool, hole, settings):
-            calls.append(hole.id)
+        def deepest(drilling, settings):
+            calls.append(drilling.hole.id)
             if len(calls) > 90:
                 raise KeyboardInterrupt
-            return Deepest(0.5 - hole.target[1] ** 2)
+            return Deepest(0.5 - drilling.hole.target[1] ** 2)
 
         monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
         answer = tmp_path / "place.json"

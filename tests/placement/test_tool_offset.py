@@ -112,8 +112,8 @@ def planted(monkeypatch, robot, tool):
     """A rule depth(e, angle) -> a job of holes 50 and 20 mm deep whose strokes keep it, and its curve."""
 
     def plant(depth, offsets, angles):
-        def deepest(robot, moved, hole, settings):
-            return Deepest(float(depth(*offset_of(robot, moved))))
+        def deepest(drilling, settings):
+            return Deepest(float(depth(*offset_of(drilling.robot, drilling.tool))))
 
         monkeypatch.setattr(tool_offset, "deepest_as_drilled", deepest)
         job = Job(robot, tool, (POSITION_1, replace(POSITION_1, id="other", depth=0.02)), OFF)

@@ -21,6 +21,7 @@ from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.files.io import job_from_dict, plan_to_json, read_plan, write_plan
 from zerorev.files.part import Part
 from zerorev.planning import job as jobs
+from zerorev.workers import Machines
 
 CLI = [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main())"]
 
@@ -91,20 +92,13 @@ class TestWorkers:
         assert told == [(done, 5) for done in range(6)]
 
     def test_a_worker_that_dies_is_told_in_one_message(self, job):
-        found = jobs.answers(job, workers=2)
+        found = jobs.answers(job, machines=Machines(2))
         next(found)
         next(found)
         for worker in multiprocessing.active_children():
             worker.kill()
         with pytest.raises(ZerorevError, match="a worker process ended"):
             list(found)
-
-    def test_how_many(self):
-        assert jobs.workers_for(3, None) == 1
-        assert jobs.workers_for(10_000, None) == len(os.sched_getaffinity(0))
-        assert jobs.workers_for(3, 7) == 7
-        with pytest.raises(InputError, match=r"0 workers \(accepted: 1 or more\)"):
-            jobs.workers_for(3, 0)
 
 
 @pytest.mark.usefixtures("counted")

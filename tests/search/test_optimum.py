@@ -105,7 +105,7 @@ class TestAgreement:
     def test_a_given_motion_that_is_deeper_raises_the_stroke(self, robot, tool, positions, monkeypatch):
         """The search for the stroke made blind: the plan's own motion is then all that is known."""
         hole = positions[0].hole
-        monkeypatch.setattr("zerorev.search.optimum.deepest_stroke", lambda *_: Deepest(0.0))
+        monkeypatch.setattr("zerorev.search.optimum.deepest_of", lambda *_: Deepest(0.0))
         found = optimum(Drilling(robot, tool, hole), OFF)
         whole = deepest_stroke(robot, tool, hole, OFF).depth
         assert hole.depth < found.deepest.depth <= whole * (1 + 1e-6)

@@ -13,15 +13,16 @@ from zerorev.files.part import Part
 from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes
-from zerorev.planning.job import answers, unanswered, workers_for
+from zerorev.planning.job import answers, unanswered
 from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown
+from zerorev.workers import Machines
 
 __all__ = ["run"]
 
 
 def run(
-    job: Job, strokes: Strokes, output: Path | None, workers: int | None, *, json: bool, figures: Path | None = None
+    job: Job, strokes: Strokes, output: Path | None, machines: Machines, *, json: bool, figures: Path | None = None
 ) -> bool:
     """Answer a job, write and show the answers.
 
@@ -29,7 +30,7 @@ def run(
         job: robot, tool, holes, settings.
         strokes: those `asked` for, or of each hole the `deepest`.
         output: where to write the plan or depth file, if anywhere.
-        workers: processes to run it on, or None for the usual number.
+        machines: to run it on.
         json: show what the file holds, and nothing else.
         figures: folder for figures, if any.
 
@@ -40,12 +41,12 @@ def run(
         KeyboardInterrupt: the user stopped it; says what is kept.
         ZerorevError: as `answers` has it.
     """
-    processes, head = workers_for(len(job.holes), workers), unanswered(job, strokes)
+    head = unanswered(job, strokes)
     shown, kept = Shown(head), list[HolePlan]()
     with nullcontext() if output is None else Part(output, head, job.holes) as part:
         keep = figures is not None or (json and output is None)
         fresh = part is not None and part.done == 0
-        _answer(job, strokes, processes, part, (shown.add, kept.append) if keep else (shown.add,))
+        _answer(job, strokes, machines, part, (shown.add, kept.append) if keep else (shown.add,))
         if part is not None:
             part.finish()
     if output is not None and fresh:  # what was kept from another run was not checked by this one
@@ -70,7 +71,7 @@ def run(
 
 
 def _answer(
-    job: Job, strokes: Strokes, workers: int, part: Part | None, takers: tuple[Callable[[HolePlan], None], ...]
+    job: Job, strokes: Strokes, machines: Machines, part: Part | None, takers: tuple[Callable[[HolePlan], None], ...]
 ) -> None:
     """Hand out the answers of a job, with progress; an interruption says what is kept."""
     total, before = len(job.holes), part.done if part else 0
@@ -79,7 +80,7 @@ def _answer(
     try:
         with (
             terminal.progress("planning" if strokes == "asked" else "deepest strokes", total) as progress,
-            closing(answers(job, strokes=strokes, workers=workers, part=part)) as found,
+            closing(answers(job, strokes=strokes, machines=machines, part=part)) as found,
         ):
             if progress:
                 progress(before, total)

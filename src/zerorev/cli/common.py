@@ -10,6 +10,7 @@ from typing import Annotated
 from cyclopts import App, Parameter, Token
 
 from zerorev.errors import InputError, OutputError
+from zerorev.workers import Machines
 
 __all__ = [
     "BAD_INPUT",
@@ -22,6 +23,7 @@ __all__ = [
     "Whole",
     "app",
     "check_outputs",
+    "machines",
     "map_app",
     "need",
     "need_maps",
@@ -120,6 +122,13 @@ def need(module: str, package: str, option: str, extra: str) -> None:
         raise InputError(
             f"needs {package}, which is not installed", where=option, accepted=f"pip install 'zerorev[{extra}]'"
         )
+
+
+def machines(workers: int | None, scheduler: str | None) -> Machines:
+    """Where to run a command: as --workers and --scheduler say, which stand beside no other."""
+    if scheduler is not None:
+        need("distributed", "dask.distributed", "--scheduler", "cluster")
+    return Machines(workers, scheduler)
 
 
 def need_maps(command: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines
 from zerorev.cli.instead import Instead, given
 
 __all__ = ["depth"]
@@ -17,6 +17,7 @@ def depth(
     *,
     output: Output = None,
     workers: int | None = None,
+    scheduler: str | None = None,
     json: bool = False,
     instead: Instead = None,
 ) -> int:
@@ -29,7 +30,8 @@ def depth(
     Args:
         job: The job file (YAML): robot, tool, holes.
         output: Where to write depths and plans (JSON). Without it the answer is only shown.
-        workers: Processes to run it on; by default all cores where the job is large. The answer is the same.
+        workers: Processes to run it on; by default all cores where the job is large enough. The answer is the same.
+        scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print what the file holds as JSON on standard output, and nothing else there.
         instead: Of the job's settings.
     """
@@ -40,4 +42,4 @@ def depth(
 
     from zerorev.cli.answering import run
 
-    return FINE if run(wanted, "deepest", output, workers, json=json) else FOUND
+    return FINE if run(wanted, "deepest", output, machines(workers, scheduler), json=json) else FOUND

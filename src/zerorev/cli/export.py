@@ -34,13 +34,12 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
 
         answer = known_as_checked(answer)
 
-    from zerorev.planning.job import workers_for
     from zerorev.program.export import export as to_program
     from zerorev.report.words import tables
 
-    name, workers = output.stem if output else None, workers_for(len(answer.holes), None)
+    name = output.stem if output else None
     with terminal.progress("checking", len(answer.holes)) as progress:
-        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=workers, progress=progress)
+        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=None, progress=progress)
     target = output or plan.with_name(program.name + program.suffix)
     terminal.print_lines(tables.finding_lines(program.findings))
     write_text(target, program.text)

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, map_app, need
-from zerorev.errors import InputError
+from zerorev.cli.common import FINE, machines, map_app, need
 from zerorev.report.words import terminal
-
-if TYPE_CHECKING:
-    from zerorev.maps.run import Runner
 
 __all__ = ["run"]
 
@@ -40,12 +35,7 @@ def run(
     """
     need("xarray", "xarray", "map", "maps")
     need("zarr", "zarr", "map", "maps")
-    if scheduler is not None:
-        need("distributed", "dask.distributed", "--scheduler", "cluster")
-        if workers is not None:
-            raise InputError(
-                "is for this machine, and --scheduler for another", where="--workers", accepted="one of them"
-            )
+    where = machines(workers, scheduler)
     from zerorev.files.map_file import read_map_file
     from zerorev.files.output import check_folder
 
@@ -55,19 +45,13 @@ def run(
             f"{task.cells_in_base:,} of {task.cells:,} cells lie inside the robot's base and get no answer (accepted:"
             f" {task.outside})"
         )
-    from zerorev.maps.run import local, run_map
+    from zerorev.maps.run import run_map
     from zerorev.report.words.map_run import summary_lines
 
-    if scheduler is None:
-        place: AbstractContextManager[Runner] = nullcontext(local(workers))
-    else:
-        from zerorev.maps.cluster import cluster
-
-        check_folder(output)
-        place = cluster(scheduler)
+    check_folder(output)
     begun = False
     try:
-        with place as runner, terminal.progress("mapping", task.cells, each="cell") as progress:
+        with terminal.progress("mapping", task.cells, each="cell") as progress:
 
             def tell(done: int, of: int) -> None:
                 nonlocal begun
@@ -77,7 +61,7 @@ def run(
                 if progress:
                     progress(done, of)
 
-            ran = run_map(task, output, runner, tell)
+            ran = run_map(task, output, where, tell)
     except KeyboardInterrupt:
         if not begun:
             raise

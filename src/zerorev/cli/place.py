@@ -8,9 +8,10 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, need
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, machines, need
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
+from zerorev.workers import Machines
 
 if TYPE_CHECKING:
     from zerorev.model.job import Job
@@ -37,6 +38,7 @@ def place(
     write_job: Path | None = None,
     figures: Path | None = None,
     workers: int | None = None,
+    scheduler: str | None = None,
     json: bool = False,
 ) -> int:
     """Find where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
@@ -57,12 +59,12 @@ def place(
         write_job: Where to write the job with its part at the best place (YAML), if every hole is drilled there.
         figures: Folder for the picture of the map (PNG); it is made if its parent exists.
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
+        scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
     from zerorev.files.io import read_job
     from zerorev.files.output import check_folder, write_text
     from zerorev.files.text import json_text
-    from zerorev.planning.job import workers_for
 
     check_outputs((output, write_job), job)
     if figures is not None:
@@ -77,8 +79,8 @@ def place(
 
     x, y, z = ((low / 1e3, high / 1e3) for low, high in ends[:3])
     freedom = Freedom(x, y, z, (math.radians(ends[3][0]), math.radians(ends[3][1])))
-    count = workers_for(len(wanted.holes) * max(grid, 1) ** len(freedom.granted), workers)
-    found, stopped = _searched(wanted, freedom, grid, cells if output or figures or json else 0, count)
+    where = machines(workers, scheduler)
+    found, stopped = _searched(wanted, freedom, grid, cells if output or figures or json else 0, where)
     data = shown.placement_data(wanted, freedom, found)
     written = []
     if output is not None:
@@ -102,14 +104,14 @@ def place(
     return FINE if found.least >= 0 else FOUND
 
 
-def _searched(job: Job, freedom: Freedom, grid: int, cells: int, workers: int) -> tuple[Placement, bool]:
+def _searched(job: Job, freedom: Freedom, grid: int, cells: int, machines: Machines) -> tuple[Placement, bool]:
     """The best place, and whether Ctrl-C stopped the search for a better one."""
     from zerorev.placement.search import placements
 
     known: Placement | None = None
     try:
         with _phases() as progress:
-            for better in placements(job, freedom, grid=grid, cells=cells, workers=workers, progress=progress):
+            for better in placements(job, freedom, grid=grid, cells=cells, machines=machines, progress=progress):
                 known = better
     except KeyboardInterrupt:
         if known is None:

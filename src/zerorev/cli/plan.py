@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines, need
 from zerorev.cli.instead import Instead, given
 
 __all__ = ["plan"]
@@ -18,6 +18,7 @@ def plan(
     output: Output = None,
     figures: Path | None = None,
     workers: int | None = None,
+    scheduler: str | None = None,
     json: bool = False,
     instead: Instead = None,
 ) -> int:
@@ -30,7 +31,8 @@ def plan(
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
-        workers: Processes to run it on; by default all cores where the job is large. The plan is the same.
+        workers: Processes to run it on; by default all cores where the job is large enough. The plan is the same.
+        scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the plan as JSON on standard output, and nothing else there.
         instead: Of the job's settings.
     """
@@ -45,4 +47,4 @@ def plan(
 
     from zerorev.cli.answering import run
 
-    return FINE if run(wanted, "asked", output, workers, json=json, figures=figures) else FOUND
+    return FINE if run(wanted, "asked", output, machines(workers, scheduler), json=json, figures=figures) else FOUND

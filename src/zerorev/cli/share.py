@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -20,6 +20,7 @@ def share(
     output: Output = None,
     write_jobs: Path | None = None,
     workers: int | None = None,
+    scheduler: str | None = None,
     json: bool = False,
 ) -> int:
     """Share the holes of a part among robots, each hole to the robot with the greatest margin on it.
@@ -33,13 +34,13 @@ def share(
         output: Where to write the answer (JSON). Without it the answer is only shown.
         write_jobs: Folder for one job file a robot, with the holes that it takes; it is made if its parent exists.
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
+        scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
     from zerorev.files.io import read_job
     from zerorev.files.moved_job import write_job
     from zerorev.files.output import check_file, check_folder, make_folder, write_text
     from zerorev.files.text import json_text
-    from zerorev.planning.job import workers_for
 
     check_outputs((output,), *jobs)
     targets = [] if write_jobs is None else [write_jobs / job.name for job in jobs]
@@ -50,6 +51,7 @@ def share(
         for target in targets:
             if target.exists():
                 check_file(target, *jobs)
+    where = machines(workers, scheduler)
     wanted = [read_job(job) for job in jobs]
 
     from zerorev.placement import sharing
@@ -57,7 +59,7 @@ def share(
 
     strokes = sum(len(job.holes) for job in wanted)
     with terminal.progress("deepest strokes", strokes, "stroke") as progress:
-        shares = sharing.share(wanted, balance=balance, workers=workers_for(strokes, workers), progress=progress)
+        shares = sharing.share(wanted, balance=balance, machines=where, progress=progress)
     data = shown.share_data(wanted, shares)
     written = []
     if output is not None:

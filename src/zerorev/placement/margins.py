@@ -62,7 +62,7 @@ class Margins:
             holes: those to look at, by their index; None: all, those that were most often the worst first.
         """
         order = tuple(np.argsort(-self._worst, kind="stable").tolist() if holes is None else holes)
-        for margins in self._workers.map(Look(place, order, enough) for place in places):
+        for margins in self._workers.map((Look(place, order, enough) for place in places), len(places)):
             self.strokes += int(np.isfinite(margins).sum())
             self._worst[int(np.nanargmin(margins))] += 1
             yield margins

@@ -18,7 +18,7 @@ from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Asked, Margins, least
 from zerorev.placement.refine import bettered
 from zerorev.placement.room import Slice, room, slices
-from zerorev.workers import Workers
+from zerorev.workers import HERE, Machines, Workers
 
 __all__ = ["Placement", "place", "placements"]
 
@@ -69,7 +69,13 @@ class Placement:
 
 
 def place(
-    job: Job, freedom: Freedom, *, grid: int = 7, cells: int = 0, workers: int = 1, progress: Progress | None = None
+    job: Job,
+    freedom: Freedom,
+    *,
+    grid: int = 7,
+    cells: int = 0,
+    machines: Machines = HERE,
+    progress: Progress | None = None,
 ) -> Placement:
     """Where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
 
@@ -78,18 +84,24 @@ def place(
         freedom: how far it may be moved.
         grid: places of the coarse grid along each granted axis; what is narrower than its meshes may be overlooked.
         cells: of each slice, along each axis; 0: no slices.
-        workers: processes to run it on; the answer is the same.
+        machines: to run it on; the answer is the same.
         progress: told (what is done, how much of it is done, how much it is in all).
 
     Raises:
         InputError: a grid of fewer than two places, a hole with a given motion.
     """
-    *_, last = placements(job, freedom, grid=grid, cells=cells, workers=workers, progress=progress)
+    *_, last = placements(job, freedom, grid=grid, cells=cells, machines=machines, progress=progress)
     return last
 
 
 def placements(
-    job: Job, freedom: Freedom, *, grid: int = 7, cells: int = 0, workers: int = 1, progress: Progress | None = None
+    job: Job,
+    freedom: Freedom,
+    *,
+    grid: int = 7,
+    cells: int = 0,
+    machines: Machines = HERE,
+    progress: Progress | None = None,
 ) -> Iterator[Placement]:
     """What is known so far, time and again, each better than the one before; the last is that of `place`.
 
@@ -97,7 +109,7 @@ def placements(
     """
     _check(job, grid, cells)
     tell = progress or (lambda what, done, total: None)
-    with Workers(Asked(job), workers) as processes:
+    with Workers(Asked(job), machines) as processes:
         margins = Margins(job, processes)
         for seen in _coarse(margins, freedom, grid, tell):
             known, best = seen

@@ -17,7 +17,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.search.optimum import deepest_as_drilled
-from zerorev.workers import Workers
+from zerorev.workers import HERE, Machines, Workers
 
 __all__ = ["Shares", "assigned", "share"]
 
@@ -48,7 +48,9 @@ class Shares:
         return float(self.margins[self.taken_by[taken], taken].min()) if taken.size else np.nan
 
 
-def share(jobs: Sequence[Job], *, balance: bool = False, workers: int = 1, progress: Progress | None = None) -> Shares:
+def share(
+    jobs: Sequence[Job], *, balance: bool = False, machines: Machines = HERE, progress: Progress | None = None
+) -> Shares:
     """Share the holes of a part among robots: each to the robot that has the greatest margin on it.
 
     Args:
@@ -56,7 +58,7 @@ def share(jobs: Sequence[Job], *, balance: bool = False, workers: int = 1, progr
             frame, and each job says where the part stands as seen from its robot.
         balance: no robot takes more than an even share of the holes, or no more above it than it must; among such
             shares the least margin counts first, then the sum of the margins.
-        workers: processes to run it on; the answer is the same.
+        machines: to run it on; the answer is the same.
         progress: told how many strokes are known, and of how many.
 
     Raises:
@@ -68,8 +70,8 @@ def share(jobs: Sequence[Job], *, balance: bool = False, workers: int = 1, progr
     _check_same(jobs)
     asked = [(r, hole) for r, job in enumerate(jobs) for hole in job.holes]
     margins = np.full((len(jobs), len(ids)), np.nan)
-    with Workers(_Depth([(job.robot, job.tool, job.settings) for job in jobs]), workers) as processes:
-        for done, ((r, hole), depth) in enumerate(zip(asked, processes.map(asked), strict=True)):
+    with Workers(_Depth([(job.robot, job.tool, job.settings) for job in jobs]), machines) as processes:
+        for done, ((r, hole), depth) in enumerate(zip(asked, processes.map(asked, len(asked)), strict=True)):
             if progress:
                 progress(done, len(asked))
             margins[r, ids.index(hole.id)] = depth - hole.depth

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Callable, Generator
 
-from zerorev.errors import InputError
 from zerorev.files.part import Part
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
@@ -14,15 +11,18 @@ from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.planning.hole import lever_findings, plan, plan_deepest
-from zerorev.workers import Workers, interrupts_held_back
+from zerorev.workers import HERE, Machines, Workers, interrupts_held_back
 
-__all__ = ["answers", "plan_job", "unanswered", "workers_for"]
-
-WORTH_WORKERS = 60  # holes of a job below which starting workers takes longer than they save
+__all__ = ["answers", "plan_job", "unanswered"]
 
 
 def plan_job(
-    job: Job, progress: Callable[[int, int], None] | None = None, *, strokes: Strokes = "asked", workers: int = 1
+    job: Job,
+    progress: Callable[[int, int], None] | None = None,
+    *,
+    strokes: Strokes = "asked",
+    workers: int | None = 1,
+    scheduler: str | None = None,
 ) -> Plan:
     """Plan every hole of a job; what is wrong with one hole is a finding, and the others are still planned.
 
@@ -30,13 +30,19 @@ def plan_job(
         job: robot, tool, holes, settings.
         progress: called with (holes done, holes in all) before the first and after each hole.
         strokes: those `asked` for, or of each hole the `deepest` without a reversal (`plan_deepest`).
-        workers: processes to run it on; the plan is the same. A script that asks for more than one must be safe to
-            import (`if __name__ == "__main__":`), as everywhere in Python.
+        workers: processes to run it on; None: one per core where the job is large enough. The plan is the same. A
+            script that asks for more than one must be safe to import (`if __name__ == "__main__":`), as everywhere in
+            Python.
+        scheduler: address of a `dask.distributed` scheduler to run it on instead, with `workers` None.
+
+    Raises:
+        InputError: fewer than one worker, or workers and a scheduler.
+        ZerorevError: a worker ended before its time, or the cluster is lost.
     """
     found: list[HolePlan] = []
     if progress:
         progress(0, len(job.holes))
-    for answer in answers(job, strokes=strokes, workers=workers):
+    for answer in answers(job, strokes=strokes, machines=Machines(workers, scheduler)):
         found.append(answer)
         if progress:
             progress(len(found), len(job.holes))
@@ -50,50 +56,32 @@ def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> 
 
 
 def answers(
-    job: Job, *, strokes: Strokes = "asked", workers: int = 1, part: Part | None = None
+    job: Job, *, strokes: Strokes = "asked", machines: Machines = HERE, part: Part | None = None
 ) -> Generator[HolePlan, None, None]:
     """The answers in the order of the job, each as soon as it and those before it are there.
 
     Args:
         job: robot, tool, holes, settings.
         strokes: those `asked` for, or of each hole the `deepest` without a reversal.
-        workers: processes to run it on; the answers are the same. The first hole is answered in this process, so that
-            kernels that are not in the cache are compiled once.
+        machines: to run it on; the answers are the same.
         part: holes that are finished come from it, and each that is new is kept in it before it is given out.
 
     Raises:
         OutputError: the part cannot be written.
-        ZerorevError: a worker ended before its time.
+        ZerorevError: a worker ended before its time, or the cluster is lost.
     """
     done = 0
     if part is not None:
         for answer in part.answers():
             done += 1
             yield answer
-    with Workers(_Planner(job.robot, job.tool, job.settings, strokes), workers) as planners:
-        for answer in planners.map(job.holes[done:]):
+    left = job.holes[done:]
+    with Workers(_Planner(job.robot, job.tool, job.settings, strokes), machines) as planners:
+        for answer in planners.map(left, len(left)):
             if part is not None:
                 with interrupts_held_back():  # a hole is kept and counted, or neither
                     part.append(answer)
             yield answer
-
-
-def workers_for(holes: int, wanted: int | None) -> int:
-    """How many processes to run a job on.
-
-    Args:
-        holes: of the job.
-        wanted: by the user; None for all cores where the job is large enough.
-
-    Raises:
-        InputError: fewer than one is wanted.
-    """
-    if wanted is None:
-        cores = len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
-        return cores if holes >= WORTH_WORKERS else 1
-    if wanted < 1:
-        raise InputError(f"{wanted} workers", where="--workers", accepted="1 or more")
-    return wanted
 
 
 class _Planner:

@@ -30,7 +30,7 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import subject, verify_hole
 from zerorev.verify.digits import moved_figures
 from zerorev.verify.figures import Figures, figures, nearer_turn
-from zerorev.workers import Workers
+from zerorev.workers import Machines, Workers
 
 __all__ = ["Checked", "check_hole", "check_plan"]
 
@@ -71,12 +71,12 @@ class Checked:
         return replace(self.plan, holes=tuple(holes), findings=self.plan.findings + of_all)
 
 
-def check_plan(stated: Plan, *, workers: int = 1, progress: Callable[[int, int], None] | None = None) -> Checked:
+def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int, int], None] | None = None) -> Checked:
     """Check the motion of every hole, and compute again what the file states of it.
 
     Args:
         stated: any plan, also a wrong one.
-        workers: processes to run it on; the outcome is the same.
+        workers: processes to run it on; None: one per core where it is worth it. The outcome is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
     """
     said = _but(stated.findings, UNFINISHED), lever_findings(stated.robot, stated.tool)
@@ -84,8 +84,10 @@ def check_plan(stated: Plan, *, workers: int = 1, progress: Callable[[int, int],
     holes: list[HolePlan] = []
     if progress:
         progress(0, len(stated.holes))
-    with Workers(partial(check_hole, stated.robot, stated.tool, stated.settings, stated.strokes), workers) as checkers:
-        for hole, (verified, messages) in zip(stated.holes, checkers.map(stated.holes), strict=True):
+    with Workers(
+        partial(check_hole, stated.robot, stated.tool, stated.settings, stated.strokes), Machines(workers)
+    ) as checkers:
+        for hole, (verified, messages) in zip(stated.holes, checkers.map(stated.holes, len(stated.holes)), strict=True):
             holes.append(replace(hole, verified=verified))
             wrong += [_error(message, hole.hole.id) for message in messages]
             if progress:

@@ -13,7 +13,7 @@ from zerorev.program.krl.write import refuse_other_makers, to_krl
 from zerorev.program.neutral import Program, build_program
 from zerorev.program.preflight import preflight
 from zerorev.verify.check import subject, verify_hole
-from zerorev.workers import Workers
+from zerorev.workers import Machines, Workers
 
 __all__ = ["CONTROLLERS", "Controller", "Exported", "export", "exporting"]
 
@@ -69,7 +69,7 @@ def export(
     skip_failed: bool = False,
     name: str | None = None,
     version: str | None = None,
-    workers: int = 1,
+    workers: int | None = 1,
     progress: Callable[[int, int], None] | None = None,
 ) -> Exported:
     """Write a verified plan as a robot program.
@@ -111,7 +111,7 @@ def exporting(
     skip_failed: bool = False,
     name: str | None = None,
     version: str | None = None,
-    workers: int = 1,
+    workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
     if controller not in CONTROLLERS:
@@ -128,14 +128,15 @@ def exporting(
     return Exported(text, findings, called, dialect.suffix, len(program.holes))
 
 
-def _verified(plan: Plan, workers: int) -> Generator[None, None, Plan]:
+def _verified(plan: Plan, workers: int | None) -> Generator[None, None, Plan]:
     """The plan with each hole that passed its check held to it again, unless this very hole was checked before.
 
     A plan file may have been altered since; a hole that was replaced in memory has another fingerprint.
     """
     holes = []
-    with Workers(partial(verify_hole, plan.robot, plan.tool, plan.settings), workers) as checkers:
-        outcomes = checkers.map(hole for hole in plan.holes if _is_open(plan, hole))
+    with Workers(partial(verify_hole, plan.robot, plan.tool, plan.settings), Machines(workers)) as checkers:
+        left = [hole for hole in plan.holes if _is_open(plan, hole)]
+        outcomes = checkers.map(left, len(left))
         for hole in plan.holes:
             holes.append(replace(hole, verified=next(outcomes)) if _is_open(plan, hole) else hole)
             yield

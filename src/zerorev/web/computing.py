@@ -17,10 +17,11 @@ from typing import Any
 from zerorev.errors import ZerorevError
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Strokes
-from zerorev.planning.job import answers, workers_for
+from zerorev.planning.job import answers
 from zerorev.report.words.outcome import outcome
 from zerorev.web.session import Session
 from zerorev.web.state import Progress, State, answered
+from zerorev.workers import Machines
 
 __all__ = ["Take", "Work", "certify", "keep", "plan", "plan_selected"]
 
@@ -204,10 +205,10 @@ def plan(work: Work, holes: Sequence[Hole], strokes: Strokes = "asked") -> None:
     job = work.session.state.job
     if job is None or not holes:
         return
-    asked, workers = replace(job, holes=tuple(holes)), workers_for(len(holes), None)
+    asked = replace(job, holes=tuple(holes))
     what, done = ("planning", "planned") if strokes == "asked" else ("finding the deepest stroke of", "made deepest")
     ids = [hole.id for hole in holes]
-    _answer(work, what, done, ids, strokes, lambda: answers(asked, strokes=strokes, workers=workers))
+    _answer(work, what, done, ids, strokes, lambda: answers(asked, strokes=strokes, machines=Machines()))
 
 
 def keep(work: Work) -> None:

@@ -13,11 +13,11 @@ import zerorev as zr
 from oracles.made_map import made_map
 from zerorev.errors import InputError
 from zerorev.maps.cells import STATUS
-from zerorev.maps.run import local
 from zerorev.model.map_task import Question
 from zerorev.report.figures.style import REVERSAL_COLOURS
 from zerorev.report.scene import map_slice
 from zerorev.report.scene.map_slice import WHY_COLOURS, computed, plane_task, slice_of
+from zerorev.workers import HERE
 
 AXES = ([300, 400, 500], [-200, -100, 0, 100, 200], [600, 700, 800])
 DIRECTIONS = np.array([[1.0, 0, 0], [0.8, 0.6, 0], [0, 0, -1]])
@@ -151,7 +151,7 @@ def test_a_plane_that_cannot_be_is_refused_by_name(robot, tool, size, spacing, w
 def test_a_computed_plane_holds_what_the_depth_search_says(robot, tool, cut, tmp_path, monkeypatch):
     monkeypatch.setattr(map_slice.tempfile, "tempdir", str(tmp_path))
     task = plane_task(Question(robot, tool, settings=STRAIGHT), np.array([0.5, 0.3, 0.8]), X, cut, (0.2, 0.2), 0.1)
-    *growing, whole = computed(task, local(1))
+    *growing, whole = computed(task, HERE)
     unseen = [int((each["status"].values == -1).sum()) for each in (*growing, whole)]
     assert unseen == sorted(unseen, reverse=True)
     assert (unseen[0] > 0, unseen[-1]) == (True, 0)
@@ -173,7 +173,7 @@ def test_giving_up_leaves_nothing_behind(robot, tool, tmp_path, monkeypatch):
     monkeypatch.setattr(map_slice.tempfile, "tempdir", str(tmp_path))
     task = plane_task(Question(robot, tool, settings=STRAIGHT), np.array([0.5, 0.3, 0.8]), X, "x", (0.2, 0.2), 0.1)
 
-    with closing(computed(task, local(1))) as growing:
+    with closing(computed(task, HERE)) as growing:
         next(growing)
         assert list(tmp_path.iterdir())
     assert not list(tmp_path.iterdir())

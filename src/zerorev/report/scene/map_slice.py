@@ -20,13 +20,14 @@ from zerorev.maps.answers import cells_of
 from zerorev.maps.cells import STATUS
 from zerorev.maps.planes import AXES, Across
 from zerorev.maps.replan import hole_of
-from zerorev.maps.run import Runner, answering
+from zerorev.maps.run import answerers, answering
 from zerorev.maps.workspace import MapStore, read_workspace_map
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import MapTask, Question
 from zerorev.model.quantity import Quantity
 from zerorev.report.words.map_run import WORDS
+from zerorev.workers import Machines
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -248,12 +249,12 @@ def plane_task(
     return MapTask(question, (x, y, z), drill[None, :], ids)
 
 
-def computed(task: MapTask, runner: Runner) -> Generator[Dataset, None, None]:
+def computed(task: MapTask, machines: Machines) -> Generator[Dataset, None, None]:
     """Run a map in a folder that is gone afterwards.
 
     Args:
         task: the map.
-        runner: of whom the answers are had.
+        machines: to compute it on.
 
     Yields:
         the map as it is after each of its chunks, of which `zerorev.maps.chunks.Chunks` tells the number.
@@ -263,7 +264,11 @@ def computed(task: MapTask, runner: Runner) -> Generator[Dataset, None, None]:
     """
     with tempfile.TemporaryDirectory(prefix="zerorev-map-") as folder:
         path = Path(folder) / "map.zarr"
-        with MapStore(path, task) as store, closing(answering(store, store.missing(), runner)) as written:
+        with (
+            answerers(task, machines) as workers,
+            MapStore(path, task) as store,
+            closing(answering(store, store.missing(), workers)) as written,
+        ):
             for _ in written:
                 yield read_workspace_map(path)
 

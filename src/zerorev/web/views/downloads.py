@@ -15,7 +15,6 @@ from nicegui import ui
 
 from zerorev.errors import NotExportableError, ZerorevError
 from zerorev.model.plan import UNFINISHED, Finding, Plan
-from zerorev.planning.job import workers_for
 from zerorev.program.export import Exported, exporting
 from zerorev.web import files
 from zerorev.web.computing import Work
@@ -126,11 +125,10 @@ def _job(session: Session) -> None:
 def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None:
     """Make the program, then show what its preflight found, or why there is none."""
     plan, unplanned = plan_of(session.state), session.state.unplanned
-    workers = workers_for(len(plan.holes), None)
 
     def run() -> Iterator[Exported | NotExportableError | None]:
         try:
-            yield (yield from exporting(plan, skip_failed=skip_failed, workers=workers))
+            yield (yield from exporting(plan, skip_failed=skip_failed, workers=None))
         except NotExportableError as error:
             yield error
 

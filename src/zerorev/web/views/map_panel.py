@@ -14,7 +14,6 @@ from nicegui import ui
 from zerorev.errors import InputError, ZerorevError
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.planes import AXES
-from zerorev.maps.run import local
 from zerorev.model.map_task import MapTask, Question
 from zerorev.model.quantity import quantities
 from zerorev.report.scene.map_slice import MapSlice, computed, plane_task, slice_of
@@ -23,6 +22,7 @@ from zerorev.web.computing import Work
 from zerorev.web.session import Session
 from zerorev.web.state import State, with_cell
 from zerorev.web.views.notices import failed
+from zerorev.workers import Machines
 
 __all__ = ["map_panel"]
 
@@ -125,7 +125,7 @@ def _start(session: Session, work: Work, form: _Form) -> None:
         return replace(state, cells=slice_of(found[-1]))
 
     title = f"mapping {task.cells:,} cells"
-    if not work.start(title, Chunks.of(task).count, lambda: computed(task, local()), take):
+    if not work.start(title, Chunks.of(task).count, lambda: computed(task, Machines()), take):
         form.wrong.set_text("something else is under way; wait for it, or cancel it")
 
 

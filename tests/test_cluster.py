@@ -1,7 +1,8 @@
-"""Maps on a cluster: the same bytes as on one process, also when a worker is lost half-way."""
+"""Work on a cluster: the same bytes as on one process, also when a worker is lost half-way."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -12,9 +13,11 @@ import warnings
 import numpy as np
 import pytest
 
+from zerorev import cli, workers
 from zerorev.errors import InputError, ZerorevError
-from zerorev.maps.run import local, run_map
+from zerorev.maps.run import run_map
 from zerorev.model.map_task import MapTask, Question
+from zerorev.workers import HERE, Machines
 
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("ignore")  # those of dask are not ours
@@ -56,9 +59,7 @@ def scheduler():
 
 @pytest.mark.long
 def test_a_lost_worker_is_survived(task, scheduler, tmp_path):
-    from zerorev.maps.cluster import cluster
-
-    run_map(task, tmp_path / "here.zarr", local(1))
+    run_map(task, tmp_path / "here.zarr", HERE)
     address, (_, worker, *_) = scheduler
     killed = []
 
@@ -67,8 +68,7 @@ def test_a_lost_worker_is_survived(task, scheduler, tmp_path):
             os.kill(worker.pid, signal.SIGKILL)
             killed.append(done)
 
-    with cluster(address) as runner:
-        run_map(task, tmp_path / "there.zarr", runner, lose_one)
+    run_map(task, tmp_path / "there.zarr", Machines(scheduler=address), lose_one)
     assert killed
     assert killed[0] < task.cells
     assert content(tmp_path / "there.zarr") == content(tmp_path / "here.zarr")
@@ -76,18 +76,16 @@ def test_a_lost_worker_is_survived(task, scheduler, tmp_path):
 
 @pytest.mark.long
 def test_a_lost_scheduler_is_told_and_the_map_goes_on_elsewhere(task, scheduler, tmp_path):
-    from zerorev.maps.cluster import cluster
-
     address, (process, *_) = scheduler
 
     def lose_it(done, of):
         if done:
             process.kill()
 
-    with pytest.raises(ZerorevError, match=r"lost|failed"), cluster(address) as runner:
-        run_map(task, tmp_path / "map.zarr", runner, lose_it)
-    run_map(task, tmp_path / "here.zarr", local(1))
-    run_map(task, tmp_path / "map.zarr", local(1))
+    with pytest.raises(ZerorevError, match=r"lost|failed"):
+        run_map(task, tmp_path / "map.zarr", Machines(scheduler=address), lose_it)
+    run_map(task, tmp_path / "here.zarr", HERE)
+    run_map(task, tmp_path / "map.zarr", HERE)
     assert content(tmp_path / "map.zarr") == content(tmp_path / "here.zarr")
 
 
@@ -95,18 +93,31 @@ def test_a_lost_scheduler_is_told_and_the_map_goes_on_elsewhere(task, scheduler,
     ("address", "said"),
     [("nonsense", "missing port"), ("foo://x:1", "unknown address scheme"), ("tcp://127.0.0.1:1", "127.0.0.1:1")],
 )
-def test_a_scheduler_that_does_not_answer(address, said, monkeypatch):
-    from zerorev.maps import cluster
-
-    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
-    with pytest.raises(InputError, match="no scheduler answers at") as refused, cluster.cluster(address):
-        pass
+def test_a_scheduler_that_does_not_answer(task, address, said, monkeypatch, tmp_path):
+    monkeypatch.setattr(workers, "PATIENCE", 0.5)
+    with pytest.raises(InputError, match="no scheduler answers at") as refused:
+        run_map(task, tmp_path / "map.zarr", Machines(scheduler=address))
     assert said in str(refused.value)
+    assert not (tmp_path / "map.zarr").exists()
 
 
-def test_a_worker_of_another_version_is_refused(task):
-    from zerorev.maps import cluster
-    from zerorev.maps.chunks import Chunks
-
+def test_a_worker_of_another_version_is_refused():
     with pytest.raises(ZerorevError, match="install the same on all"):
-        cluster._answer("0.0.0", task.question, Chunks.of(task).block(0))
+        workers._do_there("0.0.0", abs, -1)
+
+
+@pytest.mark.long
+def test_a_job_and_a_place_are_the_same_on_a_cluster(scheduler, tmp_path):
+    """By way of the command line, where --scheduler stands beside every command that does much work."""
+    address, _ = scheduler
+    hole = {"direction": [1, 0.1, 0], "depth_mm": 8}
+    holes = [{"id": f"h{n}", "target_mm": [470 + 5 * n, 250, 790 - 3 * n]} | hole for n in range(6)]
+    job = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "proof_boxes": 500, "holes": holes}
+    (tmp_path / "job.yaml").write_text(json.dumps(job))
+    for command in (["plan"], ["depth"], ["place", "--z-mm=-40:40", "--grid", "3"]):
+        written = []
+        for where in ([], ["--scheduler", address]):
+            out = tmp_path / f"{command[0]}{len(where)}.json"
+            cli.main([command[0], str(tmp_path / "job.yaml"), *command[1:], *where, "-o", str(out)])
+            written.append(out.read_bytes())
+        assert written[0] == written[1], command
