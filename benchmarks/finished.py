@@ -1,4 +1,4 @@
-"""A file of what is finished of long work, a line each, so that a run that was killed can be gone on with."""
+"""A file of what is finished of long work, a line each, so that a run that was killed can be resumed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Finished"]
 
 
 class Finished:
-    """Lines of JSON, each one thing that is finished and what it was made with; a line that was cut short is no line.
+    """Lines of JSON, each one thing that is finished and what it was made with; a line that was cut short is left out.
 
     Attributes:
         known: what was there before and was made with the same, by key.

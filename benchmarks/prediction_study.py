@@ -1,6 +1,6 @@
 """How good the prediction from critical rates is: `python -m benchmarks.prediction_study --holes 300 --seed 1000`.
 
-Random holes are foretold and then solved exactly: the deepest stroke by `zerorev.deepest_stroke`, and the least twist
+Random holes are predicted and then solved exactly: the deepest stroke by `zerorev.deepest_stroke`, and the least twist
 |psi_start - psi_end| of a motion without a reversal by an own scan over all spins and slopes. The motion threshold is
 off. Writes docs/img/prediction.png and out/prediction.json, and prints the tables of docs/explanation/prediction.md.
 """
@@ -120,19 +120,19 @@ def least_twist(case: Case, depth: float) -> float:
 
 
 def studied(seed: int) -> dict[str, Any]:
-    """One random hole: what is foretold and what is so; lengths in m, angles in rad."""
+    """One random hole: what is predicted and what is so; lengths in m, angles in rad."""
     case = random_place(seed)
     hole = case.hole
-    foretold = {
+    predicted = {
         name: predict(Drilling(case.robot, case.tool, hole), NO_THRESHOLD, root=root) for name, root in ROOTS.items()
     }
-    cheapest = foretold[DEEPEST_BY].cheapest
+    cheapest = predicted[DEEPEST_BY].cheapest
     deepest = deepest_stroke(case.robot, case.tool, hole, NO_THRESHOLD).depth
     return {
         "seed": seed,
         "spread": np.nan if cheapest is None else cheapest.spread,
         "deepest": deepest,
-        "foretold_deepest": {name: each.deepest for name, each in foretold.items()},
+        "predicted_deepest": {name: each.deepest for name, each in predicted.items()},
         "twists": [studied_twist(case, share * deepest) for share in SHARES] if deepest > 0 else [],
     }
 
@@ -140,42 +140,42 @@ def studied(seed: int) -> dict[str, Any]:
 def studied_twist(case: Case, depth: float) -> dict[str, Any]:
     """The least twist at one depth."""
     hole = replace(case.hole, depth=depth)
-    foretold = {
+    predicted = {
         name: predict(Drilling(case.robot, case.tool, hole), NO_THRESHOLD, root=root) for name, root in ROOTS.items()
     }
-    cheapest = foretold[DEEPEST_BY].cheapest
+    cheapest = predicted[DEEPEST_BY].cheapest
     return {
         "depth": depth,
         "least_twist": least_twist(case, depth),
         "spread times depth": np.nan if cheapest is None else cheapest.width * depth,
-        **{name: each.least_twist for name, each in foretold.items()},
+        **{name: each.least_twist for name, each in predicted.items()},
     }
 
 
-def judged(foretold: Array, exact: Array) -> dict[str, float]:
+def judged(predicted: Array, exact: Array) -> dict[str, float]:
     """How good a prediction is; infinite or nil ones count as misses, and are ranked last or first."""
-    usable = np.isfinite(foretold) & (foretold > 0)
-    ratio = foretold[usable] / exact[usable]
-    error = np.where(usable, np.abs(foretold / exact - 1), np.inf)
+    usable = np.isfinite(predicted) & (predicted > 0)
+    ratio = predicted[usable] / exact[usable]
+    error = np.where(usable, np.abs(predicted / exact - 1), np.inf)
     return {
-        "rank correlation": float(spearmanr(np.where(np.isfinite(foretold), foretold, 1e9), exact).statistic),
+        "rank correlation": float(spearmanr(np.where(np.isfinite(predicted), predicted, 1e9), exact).statistic),
         "median ratio": float(np.median(ratio)),
         "median error": float(np.median(error)),
         "within 25 %": float(np.mean(error <= 0.25)),
-        "within a factor of 2": float(np.mean((foretold <= 2 * exact) & (foretold >= exact / 2))),
-        "none foretold": float(np.mean(~usable)),
+        "within a factor of 2": float(np.mean((predicted <= 2 * exact) & (predicted >= exact / 2))),
+        "none predicted": float(np.mean(~usable)),
     }
 
 
 def tables(found: list[dict[str, Any]]) -> dict[str, dict[str, dict[str, float]]]:
-    """Each way of foretelling judged over all holes that have a stroke without a reversal at all."""
+    """Each way of predicting judged over all holes that have a stroke without a reversal at all."""
     some = [each for each in found if each["deepest"] > 0]
     exact = np.array([each["deepest"] for each in some])
     inverse_spread = 1 / np.array([each["spread"] for each in some])
     deepest = {
         f"{np.rad2deg(scale := np.median(exact / inverse_spread)):.0f} deg / twist spread": scale * inverse_spread
     }
-    deepest |= {name: np.array([each["foretold_deepest"][name] for each in some]) for name in ROOTS}
+    deepest |= {name: np.array([each["predicted_deepest"][name] for each in some]) for name in ROOTS}
     out = {"deepest stroke": {name: judged(values, exact) for name, values in deepest.items()}}
     for k, share in enumerate(SHARES):
         twists = [each["twists"][k] for each in some]
@@ -204,19 +204,19 @@ def markdown(judgements: dict[str, dict[str, dict[str, float]]]) -> Iterator[str
 
 
 def picture(found: list[dict[str, Any]]) -> bytes:
-    """Foretold against exact, deepest stroke and least twist."""
+    """Predicted against exact, deepest stroke and least twist."""
     figure = style.headed_figure(
-        "What the critical rates foretell, before any search", f"{len(found)} random holes, no motion threshold", 4.4
+        "What the critical rates predict, before any search", f"{len(found)} random holes, no motion threshold", 4.4
     )
     left, right = figure.subplots(1, 2)
     some = [each for each in found if each["deepest"] > 0]
-    pairs = [(each["deepest"] * 1e3, each["foretold_deepest"][DEEPEST_BY] * 1e3) for each in some]
+    pairs = [(each["deepest"] * 1e3, each["predicted_deepest"][DEEPEST_BY] * 1e3) for each in some]
     _scatter(left, pairs, style.JOINT_COLOURS[0])
-    style.label(left, "deepest stroke [mm]", "foretold [mm]")
+    style.label(left, "deepest stroke [mm]", "predicted [mm]")
     for k in range(len(SHARES)):
         pairs = [np.rad2deg((each["twists"][k]["least_twist"], each["twists"][k][TWIST_BY])) for each in some]
         _scatter(right, pairs, style.JOINT_COLOURS[1 + 2 * k])
-    style.label(right, "least twist [deg]", "foretold [deg]")
+    style.label(right, "least twist [deg]", "predicted [deg]")
     handles = [
         Line2D([], [], color=style.MUTED, linewidth=1, label="exact"),
         Line2D([], [], color=style.MUTED, linewidth=1, linestyle=":", label="25 % off"),
@@ -230,9 +230,9 @@ def picture(found: list[dict[str, Any]]) -> bytes:
 
 
 def _scatter(axes: Axes, pairs: list[Any], colour: str) -> None:
-    exact, foretold = np.array([pair for pair in pairs if np.isfinite(pair).all() and min(pair) > 0]).T
+    exact, predicted = np.array([pair for pair in pairs if np.isfinite(pair).all() and min(pair) > 0]).T
     style.bare_axes(axes)
-    axes.loglog(exact, foretold, "o", color=colour, markersize=3.2, alpha=0.55, markeredgewidth=0, zorder=3)
+    axes.loglog(exact, predicted, "o", color=colour, markersize=3.2, alpha=0.55, markeredgewidth=0, zorder=3)
     ends = np.array([exact.min(), exact.max()])
     for factor, dash in ((1.0, "-"), (1.25, ":"), (0.75, ":")):
         axes.plot(ends, factor * ends, color=style.MUTED, linewidth=1, linestyle=dash, zorder=2)
@@ -258,8 +258,8 @@ def main(arguments: list[str] | None = None, say: Callable[[str], None] = print)
     write_bytes(asked.figure, picture(found))
     say("\n".join(markdown(judgements)))
     without = sum(each["deepest"] == 0 for each in found)
-    wrong = sum(each["deepest"] == 0 and each["foretold_deepest"][DEEPEST_BY] > 0 for each in found)
-    say(f"holes without any stroke: {without}; of those, {wrong} were foretold one")
+    wrong = sum(each["deepest"] == 0 and each["predicted_deepest"][DEEPEST_BY] > 0 for each in found)
+    say(f"holes without any stroke: {without}; of those, {wrong} were predicted one")
     below = [t["least_twist"] / t["spread times depth"] for each in found for t in each["twists"]]
     say(f"least of exact twist / (spread times depth): {min(below, default=np.nan):.6f}")
     return 0

@@ -149,7 +149,7 @@ WORST = (
 )
 
 
-def _measured(number: int, path: Path, told: Any) -> None:
+def _measured(number: int, path: Path, answer: Any) -> None:
     began, worst = time.perf_counter(), WORST[number]
     try:
         worst.read(path)
@@ -159,7 +159,7 @@ def _measured(number: int, path: Path, told: Any) -> None:
     status = Path("/proc/self/status").read_text(encoding="ascii")
     peak = re.search(r"VmHWM:\s*(\d+)", status)
     assert peak
-    told.put((time.perf_counter() - began, int(peak[1]) / 1024, said))
+    answer.put((time.perf_counter() - began, int(peak[1]) / 1024, said))
 
 
 def main() -> None:
@@ -170,10 +170,10 @@ def main() -> None:
     for number in chosen:
         worst = WORST[number]
         with tempfile.TemporaryDirectory() as folder:
-            path, told = worst.write(Path(folder)), context.Queue()
-            process = context.Process(target=_measured, args=(number, path, told))
+            path, answer = worst.write(Path(folder)), context.Queue()
+            process = context.Process(target=_measured, args=(number, path, answer))
             process.start()
-            seconds, megabytes, said = told.get()
+            seconds, megabytes, said = answer.get()
             process.join()
             size = sum(file.stat().st_size for file in Path(folder).iterdir()) / 2**20
             note = "" if said == "read" else f" ({said})"

@@ -67,7 +67,7 @@ def rescore(case: Case, answer: Answer, samples: int = SAMPLES) -> Rescored:
 
 
 def turning_points(angle: Array) -> int:
-    """How often an angle changes direction, shape (N,) [rad]; backing up by no more than `BACKED_UP` is no turn."""
+    """How often an angle changes direction, shape (N,) [rad]; backing up by no more than `BACKED_UP` is not a turn."""
     steps = np.diff(angle)
     # only where the sign of the step changes can it turn
     corners = np.flatnonzero(np.sign(steps[1:]) * np.sign(steps[:-1]) <= 0) + 1

@@ -78,7 +78,7 @@ def watched(
     """Run a command to its end, and tell what it cost, together with earlier runs of it that were broken off.
 
     Args:
-        command: which goes on where it was when it is run again; where it came to its end it is not.
+        command: which resumes when it is run again; where it came to its end it is not.
         log: file in which the cost is kept on the way; where it is there already, it is added to.
         environment: of the command; None: this process' own.
         codes: with which it may end.

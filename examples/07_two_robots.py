@@ -17,7 +17,7 @@ for row in ("B", "A"):  # the upper row first
     print(row, "  ".join(jobs[shares.taken_by[k]].name[0].upper() for k in holes))
 for job, margins in zip(jobs, shares.margins, strict=True):
     print(f"{job.name} alone could drill {(margins >= 0).sum()} of {len(shares.ids)}")
-print(f"together all {(shares.taken_by >= 0).sum()}, each with {shares.least * 1e3:.1f} mm or more to spare")
+print(f"together all {(shares.taken_by >= 0).sum()}, each with {shares.least * 1e3:.1f} mm or more of margin")
 
 for r, job in enumerate(jobs):
     mine = tuple(hole for k, hole in enumerate(job.holes) if shares.taken_by[k] == r)

@@ -28,15 +28,15 @@ settings.load_profile("deterministic")
 def pytest_terminal_summary(terminalreporter):
     """Tell the figures that tests have measured, which go with their reports, also from the processes of xdist."""
     reports = [report for kind in terminalreporter.stats.values() for report in kind]
-    told = [
+    reported = [
         text
         for report in reports
         for name, text in getattr(report, "user_properties", ())
         if name == "measured" and report.when == "call"
     ]
-    if told:
+    if reported:
         terminalreporter.section("measured")
-        for text in told:
+        for text in reported:
             terminalreporter.write_line(text)
 
 

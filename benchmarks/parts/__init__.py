@@ -23,7 +23,7 @@ class Options:
         cells: of the great map, of a million at most; those of the other maps go by it.
         panel: holes of the large job.
         old: a checkout of an older state of zerorev, measured beside this one, or None.
-        folder: where what takes long is kept until it is finished, to be gone on with.
+        folder: where what takes long is kept until it is finished, to be resumed.
     """
 
     seeds: int = 20

@@ -62,8 +62,8 @@ def run(options: Options) -> Section:
         columns=("holes", "workers", "time a hole, by the clock", "most memory of a process"),
         rows=rows,
         notes=[
-            "`zerorev plan JOB -o PLAN --workers N` on a square panel, each hole searched, checked, and told how deep"
-            " it could go. The plan is the same to the byte for any number of workers."
+            "`zerorev plan JOB -o PLAN --workers N` on a square panel, each hole searched and checked, and its margin"
+            " found. The plan is the same to the byte for any number of workers."
         ],
         goals=[
             Goal(

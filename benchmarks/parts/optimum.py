@@ -34,7 +34,7 @@ class Outcome:
         scores: as rescored.
         located: reversals between the samples, too.
         verdicts: against the exact answer.
-        looked_at: motions, a seed.
+        examined: motions, a seed.
     """
 
     timed: Timed[Answer]
@@ -42,7 +42,7 @@ class Outcome:
     scores: list[Rescored]
     located: list[float]
     verdicts: list[Verdict]
-    looked_at: int
+    examined: int
 
     @property
     def travel_deg(self) -> list[float]:
@@ -66,7 +66,7 @@ def run(options: Options) -> Section:
             "as located",
             "best travel [deg]",
             "median travel [deg]",
-            "motions looked at",
+            "motions examined",
             "median time",
             "ratio to exact",
         ),
@@ -176,7 +176,7 @@ def _row(outcome: Outcome, ours: float) -> list[str]:
         f"{len(travel) / seeds:.0%}",
         f"{min(travel):.3f}" if travel else "none",
         f"{np.median(travel):.3f}" if travel else "none",
-        f"{outcome.looked_at:,}" if outcome.looked_at else "",
+        f"{outcome.examined:,}" if outcome.examined else "",
         duration(median),
         f"{median / ours:.1f}",
     ]

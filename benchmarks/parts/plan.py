@@ -75,7 +75,7 @@ def run(options: Options) -> Section:
 
 
 def zero_holes(count: int) -> list[Case]:
-    """Random holes in random directions that straight legs drill without a reversal, whatever the threshold asks."""
+    """Random holes in random directions that straight legs drill without a reversal, with any threshold."""
     found: list[Case] = []
     seed = FIRST_SEED
     while len(found) < count:

@@ -58,7 +58,7 @@ def run(options: Options) -> Section:
 
 def _fresh(variables: dict[str, str]) -> tuple[float, str]:
     """Seconds by the clock until a new process has answered and ended, and what it said on the way."""
-    # Python's own cache is one of those that are warm: a process that must not write it compiles every module anew
+    # Python's own cache is one of those that are warm: a process that must not write it compiles every module again
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     began = time.perf_counter()
     done = subprocess.run(

@@ -3,7 +3,7 @@
     f = 6/7 * reversals / 6 + 1/7 * travel / (6 * 360 deg) + jump + limit + fault
 
 counted on the steps between N samples, on each of the eight branches; the best branch counts. Turns are chosen after
-the extents of the whole path are known. A path with a pose out of reach costs 1, whatever else it does.
+the extents of the whole path are known. A path with a pose out of reach costs 1, regardless of the rest of it.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def graded() -> Array:
 
 
 class Objective:
-    """Eq. 4.7 of one hole. `evaluations` counts the motions looked at."""
+    """Eq. 4.7 of one hole. `evaluations` counts the motions examined."""
 
     def __init__(self, case: Case, fractions: Array | None = None) -> None:
         self.case, self.evaluations = case, 0

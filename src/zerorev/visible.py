@@ -2,8 +2,9 @@
 
 Control characters move the cursor, hide text, or run what a terminal has to offer; marks of direction show a line in
 another order than it is read by machines; separators of lines begin lines that nobody wrote. Text that comes out of a
-file goes through `one_line` when it is read, a message through `visible` when it is made, and whatever is written
-through the same characters once more: `terminal` and the writers of JSON, YAML and CSV do so for all that they write.
+file goes through `one_line` when it is read, a message through `visible` when it is made, and everything that is
+written through the same characters once more: `terminal` and the writers of JSON, YAML and CSV do so for all that they
+write.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 def visible(text: str) -> str:
-    r"""The text with whatever is unseen in it written out, as `\x1b` or `\u202e`; line feeds and tabs stay."""
+    r"""The text with all that is unseen in it written out, as `\x1b` or `\u202e`; line feeds and tabs stay."""
     return _IN_LINES.sub(_written_out, text)
 
 

@@ -155,7 +155,7 @@ class TestObjective:
 
 
 class Bowl(NumbaObjective):
-    """A plain bowl in place of eq. 4.7, which remembers where it was looked at."""
+    """A plain bowl in place of eq. 4.7, which remembers where it was examined."""
 
     def __init__(self, case, bottom):
         super().__init__(case)
@@ -261,7 +261,7 @@ class TestBox:
         assert content(tmp_path) == {str(Path("in") / "one"): b"1"}
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="how much memory a process holds is told elsewhere in other words")
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems state the memory of a process in other words")
 class TestWatched:
     BUSY = "import time; held = b'1' * {size}; t = time.process_time()\nwhile time.process_time() - t < 1.5: pass"
 

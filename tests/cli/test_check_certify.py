@@ -82,7 +82,7 @@ def test_json(plan_file, capsys):
     assert shown == json.loads(plan_file.read_text())
 
 
-def test_what_is_not_certified_is_told(holes_file, capsys):
+def test_what_is_not_certified_is_reported(holes_file, capsys):
     assert main(["check", "--certify", str(holes_file)]) == cli.FOUND
     out, _ = capsys.readouterr()
     assert "yes, undecided" in out

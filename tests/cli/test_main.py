@@ -143,7 +143,7 @@ class TestPlan:
         one_message(capsys, "holes.csv", *parts)
 
     @pytest.mark.parametrize("option", ["-o", "--figures"])
-    def test_bad_outputs_are_told_before_the_work(self, option, write_job, tmp_path, capsys, no_planning):
+    def test_bad_outputs_are_reported_before_the_work(self, option, write_job, tmp_path, capsys, no_planning):
         assert main(["plan", str(write_job()), option, str(tmp_path / "no" / "such")]) == cli.BAD_INPUT
         one_message(capsys, "such", "does not exist")
 
@@ -170,7 +170,7 @@ class TestPlan:
         one_message(capsys, "interrupted")
         assert [path.name for path in tmp_path.iterdir()] == ["panel.yaml"]
 
-    def test_a_fault_is_told_from_a_wrong_input(self, write_job, capsys, monkeypatch):
+    def test_a_fault_is_distinguished_from_a_wrong_input(self, write_job, capsys, monkeypatch):
         def broken(*_, **__):
             raise ZeroDivisionError
 
@@ -421,7 +421,7 @@ def test_help_needs_nothing_heavy():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, check=False).returncode == 0
 
 
-def test_a_closed_pipe_is_no_fault():
+def test_a_closed_pipe_is_not_a_fault():
     read, written = os.pipe()
     os.close(read)
     done = subprocess.run(

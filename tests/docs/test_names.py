@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / "benchmarks").glob("*.md")])
-GROUPS = {"zerorev.quantities"}  # entry points, which are no modules
+GROUPS = {"zerorev.quantities"}  # entry points, which are not modules
 
 
 def _exists(name: str) -> bool:

@@ -7,7 +7,7 @@ import pytest
 
 @pytest.fixture
 def offline(browser, site):
-    """A page of the browser; whatever is not a file is refused and noted, and so is every error."""
+    """A page of the browser; all that is not a file is refused and noted, and so is every error."""
     context = browser.new_context(viewport={"width": 1280, "height": 900})
     page = context.new_page()
     page.elsewhere, page.errors = [], []

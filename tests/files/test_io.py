@@ -429,7 +429,7 @@ def test_a_plan_cut_short_says_so(tmp_path: Path) -> None:
     assert "cut short" in refusal(lambda: files.read_plan(path))
 
 
-def test_a_job_is_no_plan_and_a_plan_no_job(tmp_path: Path) -> None:
+def test_a_job_and_a_plan_are_distinguished(tmp_path: Path) -> None:
     path = tmp_path / "plan.json"
     files.write_plan(small_plan(), path)
     assert "zerorev.plan/1" in refusal(lambda: files.read_job(path))
@@ -444,7 +444,7 @@ def test_a_number_that_no_file_may_hold_is_refused_before_writing(tmp_path: Path
     assert not list(tmp_path.iterdir())
 
 
-# --- whatever the bytes -----------------------------------------------------------------------------------------------
+# --- any bytes --------------------------------------------------------------------------------------------------------
 
 MUTATIONS = st.lists(
     st.tuples(

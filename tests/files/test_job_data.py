@@ -71,7 +71,7 @@ def test_a_robot_that_does_not_ship_goes_along(tmp_path, robot, tool):
     np.testing.assert_allclose(again.robot.limits.lower, own.limits.lower, atol=1e-12)
 
 
-def test_holes_that_count_their_spins_differently_are_no_job(robot, tool):
+def test_holes_that_count_their_spins_differently_are_not_one_job(robot, tool):
     first = Hole("a", [0.5, 0.3, 0.8], [1, 0, 0], 0.05)
     job = Job(robot, tool, (first, replace(first, id="b", psi_zero=np.array([0.0, 0.6, 0.8]))))
     with pytest.raises(InputError, match="different directions"):

@@ -1,4 +1,4 @@
-"""Paths are looked at before, and files written whole or not at all."""
+"""Paths are examined before, and files written whole or not at all."""
 
 from __future__ import annotations
 
@@ -49,16 +49,16 @@ def test_no_such_folder(check, tmp_path):
         check(tmp_path / "no" / "x")
 
 
-def test_a_folder_is_no_file(tmp_path):
+def test_a_folder_is_not_a_file(tmp_path):
     with pytest.raises(OutputError, match="it is a folder"):
         output.check_file(tmp_path)
 
 
-def test_a_file_is_no_folder(tmp_path):
+def test_a_file_is_not_a_folder(tmp_path):
     (tmp_path / "f").touch()
     with pytest.raises(OutputError, match="it is a file"):
         output.check_folder(tmp_path / "f")
-    with pytest.raises(OutputError, match="is no folder"):
+    with pytest.raises(OutputError, match="is not a folder"):
         output.check_folder(tmp_path / "f" / "g")
 
 

@@ -100,7 +100,7 @@ def test_a_table_that_is_none(text, said, tool):
         read(text, tool)
 
 
-def test_whatever_is_pasted_is_rows_or_one_clear_error(tool):
+def test_any_pasted_text_is_rows_or_one_clear_error(tool):
     rng = np.random.default_rng(4)
     letters = list("A1.,;\t\n\"' -eE_x\x00é")
     for _ in range(300):

@@ -1,6 +1,6 @@
 """Twenty thousand inputs that nobody would write, reader by reader: each is refused in one message, or read as it says.
 
-What is accepted is compared with what other parsers find in the same bytes, and with conversions written anew here.
+What is accepted is compared with what other parsers find in the same bytes, and with conversions written again here.
 """
 
 from __future__ import annotations
@@ -356,7 +356,7 @@ def one_input(reader: Reader, chance: random.Random) -> bytes:
 
 def check_inputs(readers: dict[str, Reader], count: int, seed: int, folder: Path) -> dict[str, tuple[int, int, float]]:
     """So many inputs; returns for each reader how many were tried and accepted, and the longest time [s]."""
-    before, told = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, dict[str, tuple[int, int, float]]()
+    before, reported = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, dict[str, tuple[int, int, float]]()
     whole = sum(reader.share for reader in readers.values())
     for name, reader in readers.items():
         chance, accepted, longest, tried = random.Random(f"{seed} {name}"), 0, 0.0, count * reader.share // whole
@@ -367,10 +367,10 @@ def check_inputs(readers: dict[str, Reader], count: int, seed: int, folder: Path
             longest = max(longest, time.perf_counter() - began)
             accepted += said is None
             assert said is None or said == visible(said), f"{name}: something unseen in a message"
-        told[name] = tried, accepted, longest
+        reported[name] = tried, accepted, longest
         assert longest < LONGEST, name
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 - before < MOST
-    return told
+    return reported
 
 
 def outcome(name: str, reader: Reader, data: bytes, folder: Path) -> str | None:
@@ -385,16 +385,18 @@ def outcome(name: str, reader: Reader, data: bytes, folder: Path) -> str | None:
 
 
 def test_a_thousand_inputs(readers, tmp_path):
-    told = check_inputs(readers, 1_000, 0, tmp_path)
-    assert all(0 < accepted < tried for tried, accepted, _ in told.values()), told
+    reported = check_inputs(readers, 1_000, 0, tmp_path)
+    assert all(0 < accepted < tried for tried, accepted, _ in reported.values()), reported
 
 
 @pytest.mark.long
 def test_twenty_thousand_inputs(readers, tmp_path, request):
-    told = check_inputs(readers, 20_000, 1, tmp_path)
-    words = "; ".join(f"{name} {tried} tried, {kept} read, {most:.2f} s" for name, (tried, kept, most) in told.items())
+    reported = check_inputs(readers, 20_000, 1, tmp_path)
+    words = "; ".join(
+        f"{name} {tried} tried, {kept} read, {most:.2f} s" for name, (tried, kept, most) in reported.items()
+    )
     request.node.user_properties.append(("measured", words))
-    assert sum(tried for tried, *_ in told.values()) >= 19_900
+    assert sum(tried for tried, *_ in reported.values()) >= 19_900
 
 
 @pytest.mark.soak

@@ -97,7 +97,7 @@ def whole_run(command: str, folder: Path) -> float:
 
 
 def check_kills(command: str, signals: list[signal.Signals], folder: Path, say: Callable[[str], None]) -> None:
-    """One run in one go; then as many runs as signals, each ended by one at a random moment and gone on with."""
+    """One run in one go; then as many runs as signals, each ended by one at a random moment and resumed."""
     straight = folder_of_jobs(folder / "straight")
     whole_run(command, straight)  # compiles what is not compiled yet
     shutil.rmtree(straight)
@@ -130,11 +130,11 @@ def say(request: pytest.FixtureRequest) -> Callable[[str], None]:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("command", "number"), [("plan", signal.SIGKILL), ("map", signal.SIGTERM)])
-def test_a_run_that_is_ended_goes_on_to_the_same_bytes(command, number, tmp_path, say):
+def test_a_run_that_is_ended_resumes_to_the_same_bytes(command, number, tmp_path, say):
     check_kills(command, [number], tmp_path, say)
 
 
 @pytest.mark.soak
 @pytest.mark.parametrize("command", COMMANDS)
-def test_thirty_runs_that_are_ended_go_on_to_the_same_bytes(command, tmp_path, say):
+def test_thirty_runs_that_are_ended_resume_to_the_same_bytes(command, tmp_path, say):
     check_kills(command, list(SIGNALS) * 10, tmp_path, say)

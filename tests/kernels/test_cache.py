@@ -89,7 +89,7 @@ def test_a_kernel_is_stale_once_another_file_of_kernels_changes(monkeypatch: pyt
     assert not cached()
 
 
-def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_anew(filled: Path):
+def test_a_cache_with_a_class_that_is_called_otherwise_by_now_is_made_again(filled: Path):
     assert run(filled, name="Wanted") == ("42.0 1\n", KEPT)
     index = next((filled / "cache").rglob("*.nbi")).read_bytes()
     assert b"Wanted" in index
@@ -115,7 +115,7 @@ def altered(data: bytes, how: str) -> bytes:
 
 @pytest.mark.parametrize("how", ["emptied", "cut", "one byte", "as Numba writes it", "something else"])
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
-def test_a_damaged_entry_is_made_anew(filled: Path, ending: str, how: str):
+def test_a_damaged_entry_is_made_again(filled: Path, ending: str, how: str):
     (file,) = (filled / "cache").rglob(f"*.{ending}")
     sound = file.read_bytes()
     file.write_bytes(altered(sound, how))
@@ -124,7 +124,7 @@ def test_a_damaged_entry_is_made_anew(filled: Path, ending: str, how: str):
 
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc", "lock"])
-def test_an_entry_that_may_not_be_read_is_made_anew(filled: Path, ending: str):
+def test_an_entry_that_may_not_be_read_is_made_again(filled: Path, ending: str):
     (file,) = (filled / "cache").rglob(f"*.{ending}")
     file.chmod(0)
     try:

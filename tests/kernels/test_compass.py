@@ -1,4 +1,4 @@
-"""Compass searches from a pair of legs: what they end at is no worse, and where edges lie askew it is the bottom."""
+"""Compass searches from a pair of legs: what they end at is no worse, and where edges are tilted it is the bottom."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_ends_no_worse_than_it_began_and_says_what_is_there(problem, how, monkey
 
 
 @pytest.mark.skipif(SLOW, reason="a minute, uncompiled")
-def test_goes_down_along_an_edge(problem):
+def test_descends_along_an_edge(problem):
     began = point_of(problem, STOPPED)
     stopped = searched(compass.refine, problem, began, problem.step / 10, nodes=96)[1]
     point, settled = searched(compass.settle, problem, began, problem.step / 10, nodes=96)

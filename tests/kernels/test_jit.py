@@ -90,8 +90,8 @@ def test_processes_that_need_the_same_kernels_at_once_compile_each_once(tmp_path
         assert process.stdin
         process.stdin.write("\n")
         process.stdin.flush()
-    told = [process.communicate(timeout=120)[0] for process in started]
-    assert sorted(told) == ["0\n", "0\n", "2\n"]
+    reported = [process.communicate(timeout=120)[0] for process in started]
+    assert sorted(reported) == ["0\n", "0\n", "2\n"]
 
 
 @compiled

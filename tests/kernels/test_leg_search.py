@@ -72,7 +72,7 @@ class Side:
     tried: twin.Judged
 
     def least_travel(self):
-        """Of the slopes that will do with a little to spare: raw samples see no extreme between two of them."""
+        """Of the slopes that are admissible with a little margin: raw samples see no extreme between two of them."""
         return self.tried.least_travel(margin=SPARE_RATE, slack=SPARE_ANGLE)
 
 
@@ -126,13 +126,13 @@ class TestBestLeg:
         assert feasible >= 12
 
     @pytest.mark.skipif(SLOW, reason="as above, of another aim")
-    def test_with_the_least_rotation_is_the_gentlest_that_will_do(self, sides):
+    def test_with_the_least_rotation_is_the_gentlest_admissible_one(self, sides):
         for one in sides:
-            will_do = (one.tried.margin >= SPARE_RATE) & (one.tried.slack >= SPARE_ANGLE)
-            if will_do.any():
+            admissible = (one.tried.margin >= SPARE_RATE) & (one.tried.slack >= SPARE_ANGLE)
+            if admissible.any():
                 cost, slope, _ = one.start.best_leg(one.side, one.wanted, legs.PLUNGE_ROTATION)
                 assert cost == abs(slope)
-                assert cost <= np.abs(one.tried.slope[will_do]).min() * (1 + 1e-6) + 1e-9
+                assert cost <= np.abs(one.tried.slope[admissible]).min() * (1 + 1e-6) + 1e-9
 
     @pytest.mark.parametrize("side", [1.0, -1.0])
     def test_finds_a_thin_interval_planted_between_two_candidates(self, robot, positions, side):

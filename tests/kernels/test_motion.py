@@ -83,7 +83,7 @@ def test_what_goes_beyond_the_room_is_counted():
     np.testing.assert_array_equal(few, turns[:2])
 
 
-def test_a_place_at_a_breakpoint_is_fraction_nought():
+def test_a_place_at_a_breakpoint_is_fraction_zero():
     """Constant spin turns joints round at the corner itself."""
     for start, _ in motions(1, seed=5):
         depth = start.hole.depth
@@ -117,7 +117,7 @@ def test_extents_and_angles_moved_are_those_of_dense_samples():
     assert compared >= (2 if SLOW else 25)
 
 
-def test_a_jump_between_samples_is_no_motion_however_many_points_lie_in_it():
+def test_a_jump_between_samples_is_not_a_motion_however_many_points_lie_in_it():
     """The step of one sample is cut in two by a further point; the joints still go as far from sample to sample."""
     start, _ = next(motions(1, seed=6))
     depth, none = start.hole.depth, np.empty((0, 2))
@@ -130,7 +130,7 @@ def test_a_jump_between_samples_is_no_motion_however_many_points_lie_in_it():
     assert not followed(start.robot, start.hole, swung, start.branch, further, samples=4)[0]
 
 
-def test_out_of_reach_is_no_motion():
+def test_out_of_reach_is_not_a_motion():
     start, profile = next(motions(1, seed=6))
     far = Profile(profile.standoff + 9.0, profile.psi)
     assert not followed(start.robot, start.hole, far, start.branch, np.empty((0, 2)))[0]

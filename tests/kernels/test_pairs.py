@@ -1,4 +1,4 @@
-"""Pairs of legs out of the target line: of one spin, of a coarse look at many, and of the bottom of a valley."""
+"""Pairs of legs out of the target line: of one spin, of a coarse sample at many, and of the bottom of a valley."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def look(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branch
 
 class TestLook:
     def test_guesses_the_value_and_the_margin(self):
-        """The value to within 5 %; a pair that lies between the slopes that are looked at may be missed."""
+        """The value to within 5 %; a pair that lies between the slopes that are examined may be missed."""
         guessed = missed = 0
         for start, _ in promising(1 if SLOW else 6, seed=18, robots=ROBOTS[:: 2 if SLOW else 1]):
             wanted, posture = wide(start), start.branch // 2
@@ -193,7 +193,7 @@ class TestLook:
         assert pruned >= (0 if SLOW else 20)
         assert kept >= (0 if SLOW else 20)
 
-    def test_only_the_lines_asked_for_are_looked_at(self, robot, positions):
+    def test_only_the_lines_asked_for_are_examined(self, robot, positions):
         plane = Start(robot, positions[0].hole, 4, 0.0, 0.0).plane
         psi = np.linspace(-0.2, 0.2, 3)
         wanted = asked(robot, positions[0].hole)
@@ -296,7 +296,7 @@ class TestDescend:
         assert tried >= 8
         assert found == tried
 
-    def test_a_bound_is_no_answer(self):
+    def test_a_bound_is_not_an_answer(self):
         """What is not better than what is known already may be wrong, but it is not better, either."""
         compared = 0
         for start, _ in promising(2, seed=24):

@@ -96,7 +96,7 @@ def test_spins_viable_at_the_target_are_those_of_the_naive_twin(robot, tool, pla
 
 @pytest.mark.skipif(SLOW, reason="many rows")
 @pytest.mark.parametrize("place", PLACES, ids=lambda place: str(place[0]))
-def test_finer_grains_agree_and_a_greater_cap_is_no_less_deep(robot, tool, place):
+def test_finer_grains_agree_and_a_greater_cap_is_at_least_as_deep(robot, tool, place):
     def depth(rows, steepest=CAP):
         grain = Grain(0.05 / rows, 4 / rows, 2 / rows, 1e-5)
         return Pair(robot, tool, place, longest=0.4, grain=grain, steepest=steepest).depth(0.005)

@@ -52,7 +52,7 @@ def test_as_cheap_as_highs_has_it_and_within_all_rows(lacking):
     assert lacking == (without > 0)
 
 
-def test_rows_beyond_the_count_are_not_looked_at():
+def test_rows_beyond_the_count_are_not_examined():
     rng = np.random.default_rng(2)
     cost, low, high, at, by, spare = random_programme(rng, 6, 20, lacking=False)
     few, all_rows = np.empty(6), np.empty(6)
@@ -61,7 +61,7 @@ def test_rows_beyond_the_count_are_not_looked_at():
     np.testing.assert_array_equal(few, all_rows)
 
 
-def test_many_equal_rows_are_no_trap():
+def test_many_equal_rows_do_not_trap():
     """A corner at which far more rows meet than there are unknowns."""
     size, rows = 4, 200
     at, by = np.tile(np.array([0, 1, 2, 3, 0]), (rows, 1)), np.ones((rows, simplex.WIDTH))

@@ -1,4 +1,4 @@
-"""Legs bettered by sequential linear programming: what its rows say, and where it ends."""
+"""Legs improved by sequential linear programming: what its rows say, and where it ends."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
 from zerorev.motion.drilling import Drilling
-from zerorev.search.segments import GOALS, Legs, bettered
+from zerorev.search.segments import GOALS, Legs, improved
 
 SLOW = config.DISABLE_JIT
 NO_LIMIT = np.full(6, np.inf)
@@ -43,7 +43,7 @@ def go(robot, tool):
 
     def better(legs, goal="depth", branch=BRANCH, **rules):
         held = Constraints(**({"lower": -NO_LIMIT, "upper": NO_LIMIT, "min_rate": LEAST} | rules))
-        return bettered(robot.arm, plane, branch, sense, held, legs, goal, looks=5 if SLOW else 17, enough=1e-7)
+        return improved(robot.arm, plane, branch, sense, held, legs, goal, looks=5 if SLOW else 17, enough=1e-7)
 
     better.margin = lambda legs: dense_margin(robot, plane, sense, legs)
     return better
@@ -142,13 +142,13 @@ class TestDepth:
     def test_what_cannot_be_run_is_left_as_it_is(self, robot, tool):
         plane = Drilling(robot, tool, hole_at((3.0, 0.0, 0.5))).plane
         start, held = start_at(0.05), Constraints(-NO_LIMIT, NO_LIMIT, LEAST)
-        legs, lack = bettered(robot.arm, plane, 0, np.ones(6), held, start, "depth")
+        legs, lack = improved(robot.arm, plane, 0, np.ones(6), held, start, "depth")
         assert lack == np.inf
         np.testing.assert_array_equal(legs.psi, start.psi)
 
 
 @pytest.mark.parametrize("goal", [goal for goal in GOALS if goal != "depth"])
-def test_other_goals_keep_the_depth_and_are_bettered(go, goal):
+def test_other_goals_keep_the_depth_and_are_improved(go, goal):
     start, lack = go(start_at(0.05), "margin", min_rate=np.deg2rad(5.0))
     assert lack <= 0
     legs, lack = go(start, goal, min_rate=np.deg2rad(5.0))

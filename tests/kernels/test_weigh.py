@@ -10,7 +10,7 @@ from zerorev.kernels import field, legs, weigh
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
 
-NOWHERE = np.zeros(6)  # joints at the target, where no limit is looked at
+NOWHERE = np.zeros(6)  # joints at the target, where no limit is examined
 
 
 class TestWeighLeg:
@@ -33,10 +33,10 @@ class TestWeighLeg:
                 assert SLOW or leg is not None or self.weigh(start, *self.any(start))[0] == -np.inf
                 continue
             h = start.hole.depth / (field.BLOCK - 1)
-            rough = (h**2 * dense.derivative(2)).max()  # of the parabolas, which are not all looked at
+            rough = (h**2 * dense.derivative(2)).max()  # of the parabolas, which are not all examined
             if rough > 0.05:
                 continue
-            # mostly the joints' own ways, so that many legs will do
+            # mostly the joints' own ways, so that many legs are admissible
             sense = np.where(rng.random(6) < 0.9, np.sign(dense.rates[0]), rng.choice([-1.0, 1.0], 6))
             keep = rng.random(6) < share
             wanted = asked(start.robot, start.hole, min_rate=0.2, mean_rule=mean_rule, turn_inside=turn_inside)
@@ -46,7 +46,7 @@ class TestWeighLeg:
             if margin >= wanted.min_rate or keep.all():
                 np.testing.assert_allclose((found[0], found[2]), (margin, travel), rtol=1e-5, atol=1e-6 + 0.2 * rough)
                 assert found[0] >= margin - 1e-7  # it looks at fewer parabolas
-            else:  # which of two ways a joint lacks more is told from where it sets out
+            else:  # which of two ways a joint lacks more is decided where it begins
                 assert found[0] < wanted.min_rate
             if not leg[legs.TURNS].any():  # it comes nearest to a limit at its ends, one of which is known beforehand
                 at_target = min((joints - wanted.lower).min(), (wanted.upper - joints).min())
@@ -107,7 +107,7 @@ class TestWeighLeg:
 
 
 class TestSift:
-    """What four points of a leg tell of it."""
+    """What four points of a leg say about it."""
 
     @pytest.mark.parametrize("mean_rule", [False, True])
     @pytest.mark.parametrize("share", [1.0, 0.5])
@@ -146,7 +146,7 @@ class TestSift:
         weigh.sift(*args, np.empty(field.ROOM), ceiling, travel, ends)
         assert (ceiling[0], travel[0]) == (-np.inf, np.inf)
 
-    def test_many_legs_are_looked_at_as_each_alone(self, robot, positions):
+    def test_many_legs_are_examined_as_each_alone(self, robot, positions):
         """More of them than one workspace holds."""
         start, count = Start(robot, positions[0].hole, 4, 0.1, 0.0), 61
         wanted, slopes = asked(robot, start.hole), np.linspace(-20, 20, count)

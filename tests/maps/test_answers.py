@@ -52,11 +52,11 @@ def test_the_best_come_first_by_the_sense_of_the_quantity(robot, tool, found):
 
 
 def test_no_stroke_and_no_reversals_are_not_the_same_nothing(robot, tool):
-    def nought(*_):
+    def zero(*_):
         return 0
 
-    assert np.isnan(cells_of(made_map(robot, tool, AXES, CONE, nought)).value).all()
-    assert (cells_of(made_map(robot, tool, AXES, CONE, nought, variable="reversals")).value == 0).all()
+    assert np.isnan(cells_of(made_map(robot, tool, AXES, CONE, zero)).value).all()
+    assert (cells_of(made_map(robot, tool, AXES, CONE, zero, variable="reversals")).value == 0).all()
 
 
 @pytest.mark.parametrize(("across", "right", "up"), [("x", "y", "z"), ("y", "x", "z"), ("z", "y", "x")])
@@ -83,9 +83,9 @@ def test_a_plane_is_seen_along_the_drill_and_its_surface_moves_with_it(robot, to
         np.testing.assert_allclose((places @ drill), plane.at * drill["xyz".index(plane.across)] + 14.0)
 
 
-def test_what_is_no_grid_has_no_planes(found):
+def test_what_is_not_a_grid_has_no_planes(found):
     cells = cells_of(found.isel(x=[0]).stack(point=("x", "y", "z")).isel(point=[0, 1, 2, 3, 5]))
-    with pytest.raises(InputError, match="no grid"):
+    with pytest.raises(InputError, match="do not form a grid"):
         planes_of(cells)
 
 
@@ -103,7 +103,7 @@ def test_mirror_finds_a_planted_difference_and_counts_no_pair_twice(robot, tool)
     assert np.nanmax(np.abs(both.change)) == pytest.approx(0, abs=1e-9)
 
 
-def test_difference_is_of_common_cells_whatever_their_order(robot, tool, found):
+def test_difference_is_of_common_cells_regardless_of_their_order(robot, tool, found):
     other = made_map(robot, tool, ([500, 300, 350], AXES[1], AXES[2]), CONE[[2, 0]],
                      lambda x, y, z, d: np.nan if (x, y) == (300, 200) else spread_out(x, y, z, d) + x)  # fmt: skip
     apart = difference(cells_of(found), cells_of(other))

@@ -83,7 +83,7 @@ class TestPath:
 
 class TestTurns:
     @pytest.mark.parametrize("way", [1, -1])
-    def test_a_long_spin_is_found_whatever_the_turn_of_its_first_point(self, robot, way):
+    def test_a_long_spin_is_found_regardless_of_the_turn_of_its_first_point(self, robot, way):
         """The thesis fixes each joint's turn at the first point, and loses motions by it (theory §2)."""
         joints = np.deg2rad([20, -80, 100, 15, 40, 170 * way])
         hole = hole_under(robot, STRAIGHT, joints, depth=0.01, standoff=0.01)

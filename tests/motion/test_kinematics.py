@@ -42,7 +42,7 @@ def test_forward_and_inverse_take_any_batch(robot):
     assert kinematics.inverse(robot, T[0, 0]).shape == (8, 6)
 
 
-def test_what_is_no_joint_vector_or_no_pose_is_refused_with_its_shape(robot):
+def test_what_is_not_a_joint_vector_or_no_pose_is_refused_with_its_shape(robot):
     with pytest.raises(InputError, match=r"\(2, 5\).*\(\.\.\., 6\)"):
         kinematics.forward(robot, np.zeros((2, 5)))
     with pytest.raises(InputError, match=r"\(2, 5\).*\(\.\.\., 6\)"):

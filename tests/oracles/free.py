@@ -1,4 +1,4 @@
-"""The slow twin of free legs: spins on a grid, reached by moves from node to node, whatever leads there.
+"""The slow twin of free legs: spins on a grid, reached by moves from node to node, by any way.
 
 It knows no intervals of slopes and no ends that drift: a move from a node of one row to a node of the next is allowed
 if every joint goes its wanted way at both of its ends. What it reaches is there, but for what happens between two rows;
@@ -41,7 +41,7 @@ def reach(robot, tool, hole, branch, psi_t, sigma, *, step, turn, steepest, min_
         steepest: twist rate [rad/m].
         min_rate: [rad/m].
         longest: where to stop [m].
-        widest: how far spins are looked at from psi_t [rad].
+        widest: how far spins are examined from psi_t [rad].
     """
     half = int(widest / turn)
     psi = psi_t + turn * np.arange(-half, half + 1)

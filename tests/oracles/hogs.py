@@ -8,7 +8,7 @@ import time
 
 
 def echo(given):
-    """Gives back what it is given; what is printed meanwhile is no result."""
+    """Gives back what it is given; what is printed meanwhile is not a result."""
     for thing in given:
         print("noise")  # noqa: T201
         yield thing

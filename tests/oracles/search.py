@@ -1,7 +1,7 @@
 """The slow twin of the search: every plan on a grid of (psi_s, psi_t, psi_e), as pairs of legs (theory §3).
 
 It knows no critical rates, no intervals and no valleys: legs are sampled, their reversals counted, and all pairs out of
-one spin at the target are looked at. What it finds is there; what it does not find may still be.
+one spin at the target are examined. What it finds is there; what it does not find may still be.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def pairs(robot, legs, k, branch, weights):
     return np.where(possible, cost, np.inf), np.where(possible, travel, np.inf)
 
 
-def best_on_grid(robot, tool, hole, *, spins=40, weights=(1.0,) * 6, bound=None, offset=0.0, looked_at=60):
+def best_on_grid(robot, tool, hole, *, spins=40, weights=(1.0,) * 6, bound=None, offset=0.0, examined=60):
     """The best plan of a grid of spins [rad] by (weighted reversals, travel), or None where none can be run.
 
     The sampled counts may miss a pair of reversals between two nodes, so plans are taken up in the order of what they
@@ -122,7 +122,7 @@ def best_on_grid(robot, tool, hole, *, spins=40, weights=(1.0,) * 6, bound=None,
         weights: of the joints' reversals.
         bound: the spins lie within +- this, or anywhere.
         offset: moves the grid, in steps of it.
-        looked_at: how many plans are evaluated at most.
+        examined: how many plans are evaluated at most.
     """
     if bound is None:
         step = FULL_TURN / spins
@@ -147,7 +147,7 @@ def best_on_grid(robot, tool, hole, *, spins=40, weights=(1.0,) * 6, bound=None,
             found += [(cost.flat[n], travel.flat[n], k, branch, *np.unravel_index(n, cost.shape)) for n in order]
     best = None
     candidates = sorted(candidate for candidate in found if np.isfinite(candidate[0]))
-    for cost, travel, k, branch, p, r in candidates[:looked_at]:
+    for cost, travel, k, branch, p, r in candidates[:examined]:
         if best is not None and (round(cost, 9), travel) >= best.key:
             break
         profile = Profile.straight(hole.depth, psi_t[k] + twist[p], psi_t[k], psi_t[k] + twist[r])

@@ -191,11 +191,11 @@ class TestInfeasible:
 
 @pytest.fixture(scope="module")
 def three_holes(robot, tool, positions):
-    """The plan of a job whose second hole is out of reach, and the progress that was told."""
+    """The plan of a job whose second hole is out of reach, and the progress that was reported."""
     far = Hole("far", np.array([1.5, 0.0, 0.8]), X, 0.02)
     holes = (positions[0].hole, far, replace(positions[1].hole, profile=positions[1].profile))
-    told = []
-    return plan_job(Job(robot, tool, holes, name="three"), lambda done, total: told.append((done, total))), told
+    reported = []
+    return plan_job(Job(robot, tool, holes, name="three"), lambda done, total: reported.append((done, total))), reported
 
 
 class TestJob:
@@ -204,7 +204,7 @@ class TestJob:
         assert [hole.status for hole in plan.holes] == ["planned", "infeasible", "evaluated"]
         assert [f.hole for f in plan.all_findings if f.level == "error"] == ["far"]
 
-    def test_progress_is_told_before_the_first_hole_and_after_each(self, three_holes):
+    def test_progress_is_reported_before_the_first_hole_and_after_each(self, three_holes):
         assert three_holes[1] == [(0, 3), (1, 3), (2, 3), (3, 3)]
 
     def test_holes_come_in_the_order_of_the_job(self, three_holes, positions):

@@ -71,7 +71,7 @@ def test_nothing_left_is_refused(failed, plan_of):
         export(plan_of(failed), skip_failed=True)
 
 
-def test_an_error_of_the_whole_plan_is_refused_whatever_is_skipped(published, plan_of, spoil):
+def test_an_error_of_the_whole_plan_is_refused_even_if_failed_holes_are_skipped(published, plan_of, spoil):
     plan = spoil(plan_of(published(1)), findings=(Finding("error", "robot", "the robot file has changed"),))
     with pytest.raises(NotExportableError, match="the plan: the robot file has changed"):
         export(plan, skip_failed=True)
@@ -160,7 +160,7 @@ def test_no_id_gets_out_of_its_comment(hole_id, published, plan_of, krl, spoil):
         assert "%{" not in line
 
 
-def test_two_ids_alike_in_ascii_are_told_apart_by_their_number(published, plan_of, krl, spoil):
+def test_two_ids_alike_in_ascii_are_distinguished_by_their_number(published, plan_of, krl, spoil):
     holes = [spoil(published(3), hole=spoil(published(3).hole, id=hole_id)) for hole_id in ("穴", "孔")]
     folds = krl.read(export(plan_of(*holes)).text).folds
     assert [fold for fold in folds if fold.startswith("Hole")] == ["Hole 1 of 2: ?", "Hole 2 of 2: ?"]
@@ -199,9 +199,9 @@ def test_never_a_relative_move(published, plan_of, krl):
     assert np.all([move.kind in ("PTP", "LIN") for move in krl.read(text).moves])
 
 
-def test_on_two_processes_the_program_is_the_same_and_is_told_of_hole_by_hole(failed, published, plan_of):
-    told = []
+def test_on_two_processes_the_program_is_the_same_and_progress_is_reported_hole_by_hole(failed, published, plan_of):
+    reported = []
     plan = plan_of(published(1), failed, published(3))
-    alone = export(plan, skip_failed=True, progress=lambda *so_far: told.append(so_far))
-    assert told == [(0, 3), (1, 3), (2, 3), (3, 3)]
+    alone = export(plan, skip_failed=True, progress=lambda *so_far: reported.append(so_far))
+    assert reported == [(0, 3), (1, 3), (2, 3), (3, 3)]
     assert export(plan, skip_failed=True, workers=2) == alone

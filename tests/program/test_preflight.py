@@ -53,7 +53,7 @@ def test_joint_speeds_at_the_feeds(published, plan_of):
         export(plan)
 
 
-def test_both_legs_are_looked_at(published, plan_of):
+def test_both_legs_are_examined(published, plan_of):
     plan = plan_of(published(1), feed_plunge=2.0, feed_retract=2.0)
     assert [f.message.split(" on the ")[1].split()[0] for f in findings(plan, "joint_speed")] == [
         "lead-in",
@@ -84,7 +84,7 @@ def test_a_deeper_corner_asks_for_clearance(published, plan_of):
     assert not findings(plan_of(published(1)), "clearance")
 
 
-def test_a_plan_that_did_not_deepen_its_corner_is_told(published, plan_of):
+def test_a_plan_that_did_not_deepen_its_corner_is_reported(published, plan_of):
     plan = plan_of(published(1), blend=4e-3, deepen_corner=True)
     assert findings(plan, "corner_not_deepened")
     assert "comes out 2 mm less deep" in findings(plan, "blend")[0].message

@@ -16,7 +16,7 @@ def standoff_mm(points):
     return [pytest.approx(point.standoff * 1e3) for point in points]
 
 
-def test_the_lead_in_goes_on_with_the_slope_of_the_plunge():
+def test_the_lead_in_continues_with_the_slope_of_the_plunge():
     points, corner = waypoints(Profile.straight(0.05, *np.deg2rad([20, -5, -30])), 5e-3)
     assert standoff_mm(points) == [55, 50, 0, 50]
     assert psi_deg(points) == [22.5, 20, -5, -30]
@@ -78,6 +78,6 @@ def test_a_blend_is_clipped_to_half_the_shorter_neighbour():
     assert blends_mm(profile, 0.0, 10e-3) == [0, 2, 2, 0]
 
 
-def test_an_exact_stop_at_the_corner_is_no_stop_elsewhere():
+def test_an_exact_stop_at_the_corner_is_not_a_stop_elsewhere():
     passing = Settings(blend=0.0).passing_blend * 1e3
     assert blends_mm(Profile.straight(0.05, 0.3, 0.0, -0.3), 5e-3, 0.0) == [0, passing, 0, 0]

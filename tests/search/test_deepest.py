@@ -33,8 +33,8 @@ def hole_at(target_mm, depth=0.01):
 
 
 @pytest.mark.parametrize(("offset_mm", "least_mm"), [(80.0, 56.9), (155.0, 90.8)])
-def test_a_hole_that_the_coarse_look_thinks_deeper_than_it_is_still_has_a_depth(robot, tool, offset_mm, least_mm):
-    """With the threshold, and less offset, all that the coarse look sees at one depth turns out to lack margin."""
+def test_a_hole_that_the_coarse_sample_thinks_deeper_than_it_is_still_has_a_depth(robot, tool, offset_mm, least_mm):
+    """With the threshold, and less offset, all that the coarse sample sees at one depth turns out to lack margin."""
     moved = with_offset(robot, tool, offset_mm * 1e-3)
     assert deepest_stroke(robot, moved, hole_at((500, 300, 800)), Settings()).depth * 1e3 >= least_mm
 
@@ -100,7 +100,7 @@ def test_a_hole_out_of_reach_has_no_depth(robot, tool):
     assert (nothing.depth, nothing.profile, nothing.branch) == (0.0, None, None)
 
 
-def test_the_own_depth_of_the_hole_is_not_looked_at(robot, tool):
+def test_the_own_depth_of_the_hole_is_not_examined(robot, tool):
     depths = {deepest_stroke(robot, tool, hole_at(FIGURES[1][0], depth), OFF).depth for depth in (0.001, 0.5)}
     assert len(depths) == 1
 

@@ -175,7 +175,7 @@ class TestReversalsBetweenSamples:
         assert travel <= SAMPLED_TRAVEL[position.name]
         assert travel < travel_deg(exact) - 0.2
 
-    def test_a_closer_look_finds_the_joint_that_reverses_next_to_the_target(
+    def test_a_finer_sample_finds_the_joint_that_reverses_next_to_the_target(
         self, robot, tool, position, sampled_optimum
     ):
         profile, exact = sampled_optimum
@@ -369,7 +369,7 @@ class TestBetweenTheNodes:
         ],
     )
     def test_a_dip_between_them_does_not_turn_the_search_away(self, seed, depth, travel):
-        """All three ended with a joint that turns round and back, and so as holes where zero is not to be had."""
+        """All three ended with a joint that turns round and back, and so as holes where zero is not possible."""
         case = drilled(random_place(seed), depth)
         problem = Problem(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         found = Valleys(problem, problem.branches).best_motion(np.ones(6, dtype=bool))
@@ -377,8 +377,8 @@ class TestBetweenTheNodes:
         assert travel_deg(found) < travel
         assert found.score.min_rate.min() >= 0.5 * LEAST_RATE
 
-    def test_where_joints_reverse_the_valley_is_gone_down_along_its_edge(self):
-        """Random hole 1159: SciPy's evolution from within 2 deg of the answer bettered it by 0.008 deg."""
+    def test_where_joints_reverse_the_valley_is_descended_along_its_edge(self):
+        """Random hole 1159: SciPy's evolution from within 2 deg of the answer improved it by 0.008 deg."""
         case = drilled(random_place(1159), 0.052375893186591437)
         found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
         assert found.reversals == 5

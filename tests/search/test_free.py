@@ -125,7 +125,7 @@ def falls_with_the_cap(seeds, caps_deg_per_mm):
 
 
 @pytest.mark.long
-def test_a_greater_cap_is_no_less_deep():
+def test_a_greater_cap_is_at_least_as_deep():
     """Five caps on the kind of holes on which the stroke fell by up to a half."""
     falls = falls_with_the_cap(range(24), (1, 2, 5, 8, 12))
     assert sum(fall > 2e-3 for fall in falls.values()) <= 3, falls
@@ -231,7 +231,7 @@ def test_only_the_branch_asked_for_is_searched(robot, tool):
     assert branch == 3
 
 
-def test_a_short_stroke_is_no_special_case(robot, tool):
+def test_a_short_stroke_is_not_a_special_case(robot, tool):
     profile, branch = found(robot, tool, hole_at(FIGURES[0][0], 5e-4), FIVE)
     assert profile.standoff[0] == pytest.approx(5e-4)
     proven(robot, tool, hole_at(FIGURES[0][0]), profile, branch, replace(FIVE, blend=1e-4))

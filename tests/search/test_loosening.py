@@ -80,7 +80,7 @@ def test_a_few_holes():
 
 
 def test_a_hole_just_deeper_than_the_deepest_stroke():
-    """The deepest motion, made a little deeper, once was no candidate, and the search found one with a reversal."""
+    """The deepest motion, made a little deeper, was not a candidate once: the search found one with a reversal."""
     assert what_is_worse(*pairs(1074)["threshold"]) == []
 
 
@@ -91,7 +91,7 @@ def test_some_holes():
 
 @pytest.mark.soak
 def test_three_hundred_holes(record_property):
-    """Where joints have to reverse the search is no proof: a better motion may be overlooked, on few holes."""
+    """Where joints have to reverse the search is not a proof: a better motion may be overlooked, on few holes."""
     found, count = compared(range(1000, 1300))
     record_property("measured", f"loosening: {len(found)} of {count} answers worse: {found}")
     assert len(found) <= 0.02 * count

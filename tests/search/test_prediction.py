@@ -1,4 +1,4 @@
-"""Critical rates and what they foretell: against finite differences, evaluated motions and the exact answers."""
+"""Critical rates and what they predict: against finite differences, evaluated motions and the exact answers."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class TestRoots:
         assert float(first_order_root(a, b, c)) == pytest.approx(down)
         assert earlier_root(a, b, c) == min(first_order_root(a, b, c), second_order_root(a, b, c))
 
-    def test_what_is_not_above_nought_has_no_way_to_go(self):
+    def test_what_is_not_above_zero_has_no_way_to_go(self):
         for root in (first_order_root, second_order_root, earlier_root):
             assert root(np.array([0.0, -1.0]), np.array(1.0), np.array(1.0)).tolist() == [0.0, 0.0]
 
@@ -141,9 +141,9 @@ def test_the_expansion_is_that_of_the_joints_along_a_leg(robot, tool):
     u, errors = 8.0, []
     powers = [np.array([u**k for k in range(len(order))]) @ order[:, n] for order in line.motion]
     for s in (0.004, 0.008):
-        foretold = powers[0] * s + powers[1] * s**2 / 2 + powers[2] * s**3 / 6
+        predicted = powers[0] * s + powers[1] * s**2 / 2 + powers[2] * s**3 / 6
         there = angles(robot, tool, POSITION_1, s, line.psi[n] + u * s)[4]
-        errors.append(np.abs(wrapped(there - line.angles[n]) - foretold).max())
+        errors.append(np.abs(wrapped(there - line.angles[n]) - predicted).max())
     assert errors[0] < 1e-5
     assert errors[1] / errors[0] == pytest.approx(16, rel=0.25)
 
@@ -175,13 +175,13 @@ class TestPredict:
 
     def test_the_places_are_in_the_branch_and_the_bound_that_are_asked_for(self, robot, tool):
         settings = replace(OFF, psi_bound=0.4)
-        foretold = predict(Drilling(robot, tool, replace(POSITION_1, branch=4)), settings)
-        for at in (foretold.cheapest, foretold.deepest_at):
+        predicted = predict(Drilling(robot, tool, replace(POSITION_1, branch=4)), settings)
+        for at in (predicted.cheapest, predicted.deepest_at):
             assert at.branch == 4
             assert abs(at.psi) <= 0.4
-        assert foretold.deepest < predict(Drilling(robot, tool, POSITION_1), OFF).deepest
+        assert predicted.deepest < predict(Drilling(robot, tool, POSITION_1), OFF).deepest
 
-    def test_a_deeper_hole_needs_more_twist_up_to_where_none_is_foretold(self, robot, tool):
+    def test_a_deeper_hole_needs_more_twist_up_to_where_none_is_predicted(self, robot, tool):
         twists = [
             predict(Drilling(robot, tool, hole_at((500, 300, 800), depth)), OFF).least_twist
             for depth in (0.02, 0.05, 0.5)
@@ -193,26 +193,26 @@ class TestPredict:
             predict(Drilling(robot, tool, POSITION_1)).deepest < predict(Drilling(robot, tool, POSITION_1), OFF).deepest
         )
 
-    def test_nothing_is_foretold_out_of_reach(self, robot, tool):
+    def test_nothing_is_predicted_out_of_reach(self, robot, tool):
         nothing = predict(Drilling(robot, tool, hole_at((3000, 0, 500))))
         assert (nothing.cheapest, nothing.least_twist, nothing.deepest, nothing.deepest_at) == (None, np.inf, 0.0, None)
 
-    def test_nothing_is_foretold_without_a_lever(self, robot, tool):
+    def test_nothing_is_predicted_without_a_lever(self, robot, tool):
         T = tool.T_flange_tcp.copy()
         T[2, 3] = -robot.arm.c4
         assert predict(Drilling(robot, Tool("no lever", T), POSITION_1)).deepest == 0
 
     @pytest.mark.long
     def test_as_good_as_the_documentation_says(self, robot, tool):
-        rng, exact, foretold = np.random.default_rng(11), [], []
+        rng, exact, predicted = np.random.default_rng(11), [], []
         while len(exact) < 30:
             hole = Hole("h", rng.uniform([-0.9, -0.9, -0.5], [0.9, 0.9, 1.3]), rng.normal(size=3), 0.01)
             depth = deepest_stroke(robot, tool, hole, OFF).depth
             if depth > 0:
                 exact.append(depth)
-                foretold.append(predict(Drilling(robot, tool, hole), OFF).deepest)
-        error = np.abs(np.array(foretold) / exact - 1)
-        assert spearmanr(foretold, exact).statistic > 0.85
+                predicted.append(predict(Drilling(robot, tool, hole), OFF).deepest)
+        error = np.abs(np.array(predicted) / exact - 1)
+        assert spearmanr(predicted, exact).statistic > 0.85
         assert np.median(error) < 0.25
 
 

@@ -46,7 +46,7 @@ def check_no_branch_is_better(case: Case, settings: Settings) -> None:
 
 
 class TestAllBranchesAtOnce:
-    def test_a_valley_that_looks_dearer_than_another_branch_is_gone_down(self):
+    def test_a_valley_that_looks_dearer_than_another_branch_is_descended(self):
         """Random hole 1079: on the grid branches 0 and 1 look 18 % dearer than 2 and 3; they are 7 % cheaper."""
         case = random_hole(1079)
         found = search(Drilling(case.robot, case.tool, case.hole), NO_THRESHOLD)
@@ -85,7 +85,7 @@ class TestSets:
 
 class TestSurvey:
     def test_says_what_the_best_pairs_of_each_branch_do(self):
-        """Whatever other branches have; and refining makes no pair worse than the grid has it."""
+        """Regardless of other branches; and refining makes no pair worse than the grid has it."""
         problem = problem_of(random_hole(1079))
         pairs, found = survey(problem), surveyed(problem)
         for branch in range(8):

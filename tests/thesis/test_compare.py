@@ -82,7 +82,7 @@ class TestCompare:
             fooled += run.reversals > run.outcome.reversals
         assert fooled > 0  # least travel leads to where a joint turns round between two samples
 
-    def test_a_seed_gives_the_same_whatever_ran_before(self, job, answer):
+    def test_a_seed_gives_the_same_regardless_of_earlier_runs(self, job, answer):
         one = job.holes[1].id
         alone = compare(job, ["differential_evolution"], [2], budget=2000, hole=one)
         again = next(
@@ -92,11 +92,16 @@ class TestCompare:
         assert alone.runs[0].outcome.first_zero == again.outcome.first_zero
 
     def test_progress_and_budget(self, job):
-        told = []
+        reported = []
         answer = compare(
-            job, ["direct", "exact"], [7], budget=400, hole=job.holes[0].id, progress=lambda *done: told.append(done)
+            job,
+            ["direct", "exact"],
+            [7],
+            budget=400,
+            hole=job.holes[0].id,
+            progress=lambda *done: reported.append(done),
         )
-        assert told == [(1, 2), (2, 2)]
+        assert reported == [(1, 2), (2, 2)]
         assert [run.outcome.evaluations for run in answer.runs] == [400, 0]
 
     def test_the_bound_is_the_jobs_or_the_thesis(self, job):
@@ -137,8 +142,8 @@ class TestCompare:
             ({"methods": ["exact", "pso"]}, "no method 'pso' .*exact, swarm"),
             ({"methods": []}, "no method"),
             ({"seeds": []}, "seeds: no seed"),
-            ({"seeds": [0, 1.5]}, "seeds: 1.5 is no seed"),
-            ({"seeds": [-1]}, "seeds: -1 is no seed"),
+            ({"seeds": [0, 1.5]}, "seeds: 1.5 is not a seed"),
+            ({"seeds": [-1]}, "seeds: -1 is not a seed"),
             ({"seeds": [True]}, "seeds: True"),
             ({"budget": 399}, "budget: 399"),
             ({"samples": 201}, "samples: 201"),

@@ -35,7 +35,7 @@ def method(request):
 
 
 class Bowl:
-    """A plain bowl in place of eq. 4.7, which remembers where it was looked at; below 0.01 it has no reversals."""
+    """A plain bowl in place of eq. 4.7, which remembers where it was examined; below 0.01 it has no reversals."""
 
     def __init__(self, scale=1.0):
         self.looked, self.evaluations, self.first_zero, self.scale = [], 0, None, scale
@@ -88,7 +88,7 @@ class TestEveryMethod:
         assert np.abs(np.concatenate(bowl.looked)).max() <= BOX
         assert outcome.first_zero == bowl.first_zero
 
-    def test_reports_the_best_that_it_looked_at(self, planted, method):
+    def test_reports_the_best_that_it_examined(self, planted, method):
         outcome = METHODS[method].run(planted, 2, 600)
         looked = np.concatenate(planted.made[0].looked)
         np.testing.assert_array_equal(outcome.spins, looked[((looked - BOTTOM) ** 2).sum(axis=1).argmin()])
@@ -155,7 +155,7 @@ class TestOnAHole:
 
 
 class TestTrial:
-    def test_more_motions_than_the_budget_holds_are_not_looked_at(self):
+    def test_more_motions_than_the_budget_holds_are_not_examined(self):
         seen = []
 
         def algorithm(trial, seed):

@@ -83,11 +83,11 @@ class TestCells:
         assert some.identical(found.isel(psi_target_deg=[3, 17]))
 
     def test_progress_counts_to_the_end(self, robot, tool, positions):
-        told = []
-        parameter_map(robot, tool, positions[0].hole, size=20, progress=lambda done, of: told.append((done, of)))
-        assert told[0] == (0, 20)
-        assert told[-1] == (20, 20)
-        assert told == sorted(told)
+        reported = []
+        parameter_map(robot, tool, positions[0].hole, size=20, progress=lambda done, of: reported.append((done, of)))
+        assert reported[0] == (0, 20)
+        assert reported[-1] == (20, 20)
+        assert reported == sorted(reported)
 
 
 class TestMirror:
@@ -174,7 +174,7 @@ class TestStore:
         assert read_map(tmp_path / "map.zarr").identical(found)
         assert [path.name for path in tmp_path.iterdir()] == ["map.zarr"]
 
-    def test_what_is_no_map_is_refused(self, found, tmp_path):
+    def test_what_is_not_a_map_is_refused(self, found, tmp_path):
         with pytest.raises(InputError, match="no folder of zarr"):
             read_map(tmp_path)
         found[["score"]].to_zarr(tmp_path / "other.zarr", consolidated=False)

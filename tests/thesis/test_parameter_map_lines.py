@@ -59,7 +59,7 @@ def test_volume_shows_every_cell_without_reversals(found):
     assert all("[deg]" in label for label in (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()))
 
 
-def test_a_map_without_zeros_is_drawn_and_told(robot, tool, positions):
+def test_a_map_without_zeros_is_drawn_and_described(robot, tool, positions):
     none = parameter_map(robot, tool, positions[1].hole, size=4)
     assert (none["reversals"].values != 0).all()
     assert "0 of 64" in zero_volume(none).texts[0].get_text()

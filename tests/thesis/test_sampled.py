@@ -1,4 +1,4 @@
-"""The thesis' objective as a search meets it: words, counters, threads, the mirror law, and the second look."""
+"""The thesis' objective as a search meets it: words, counters, threads, the mirror law, and the second examination."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class TestSampledObjective:
         np.testing.assert_array_equal(found.reversals, reversals[:, 5])
         assert (found.branch == 5).all()
 
-    def test_no_motions_are_no_trouble(self, robot, tool, positions):
+    def test_no_motions_give_no_scores(self, robot, tool, positions):
         assert SampledObjective(Drilling(robot, tool, positions[0].hole), threads=2)(np.empty((0, 3))).shape == (0,)
 
 
@@ -137,15 +137,13 @@ class TestLookAgain:
         between = np.flatnonzero((coarse == 0) & (fine > 0))
         assert between.size
         objective = SampledObjective(Drilling(robot, tool, hole))
-        again = objective.look_again(spins[between[0]], branch)
+        again = objective.examine(spins[between[0]], branch)
         assert again.reversals == fine[between[0]]
         assert again.exact.score.reversals >= again.reversals
         assert objective.evaluations == 0
 
     def test_is_equation_4_7_of_the_exact_evaluation(self, robot, tool, position):
-        again = SampledObjective(Drilling(robot, tool, position.hole)).look_again(
-            published(position)[0], position.branch
-        )
+        again = SampledObjective(Drilling(robot, tool, position.hole)).examine(published(position)[0], position.branch)
         exact = evaluate(robot, tool, position.hole, position.profile, position.branch)
         assert again.exact.score.reversals == exact.score.reversals == again.reversals == 0
         assert again.score == pytest.approx(thesis_objective(exact), abs=1e-6)

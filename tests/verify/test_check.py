@@ -85,7 +85,7 @@ def test_every_robot_is_checked_wherever_it_stands(robot, drill, settings, build
 
 
 def test_an_edge_where_a_joint_just_stops_still_passes(kuka, drill, settings, published):
-    """Least travel drives a joint to a standstill at the end of a leg; that is no reversal, and blending makes none."""
+    """Least travel drives a joint to a standstill at the end of a leg; that is not a reversal, also after blending."""
     inside, outside = 20.1, 0.0
     for _ in range(40):
         middle = (inside + outside) / 2

@@ -161,7 +161,7 @@ def test_a_distance_to_the_limits_overstated(check, plan):
     said(check(score(plan, limit_distance=room)), "A6 comes within", "of a limit", "stand-off")
 
 
-def test_understating_is_no_fault(check, plan):
+def test_understating_is_not_a_fault(check, plan):
     modest = score(plan, min_rate=plan.score.min_rate * 0.5, limit_distance=plan.score.limit_distance - 0.1)
     assert check(modest).passed
 
@@ -223,7 +223,7 @@ def test_a_blend_that_makes_a_joint_reverse(check, kuka, drill, build, random_ho
     assert not any("blended A1" in failure for failure in check(plan, blend=0.0).failures)
 
 
-def test_the_blends_at_other_breakpoints_are_looked_at_too(check, kuka, drill, build, plan):
+def test_the_blends_at_other_breakpoints_are_examined_too(check, kuka, drill, build, plan):
     cut = Profile(*plan.motion.profile.at(np.array([0.0, 0.02, 0.05, 0.08, 0.1])))
     five = build(kuka, drill, plan.hole, cut, plan.motion.joints[0])
     assert check(five, blend=0.01).passed

@@ -15,7 +15,7 @@ def made_up(columns):
     return Track(Path(standoff, np.zeros_like(standoff), (), int(standoff.argmin())), joints)
 
 
-def test_a_pause_is_no_reversal_and_a_turn_after_a_pause_is_one():
+def test_a_pause_is_not_a_reversal_and_a_turn_after_a_pause_is_one():
     track = made_up(
         [
             [0, 1, 2, 3, 4],
@@ -63,7 +63,7 @@ def test_legs_are_even_and_hold_every_breakpoint_exactly():
     assert path.standoff[path.corner] == 0
     steps = np.abs(np.diff(path.standoff))
     assert steps.max() < 1.05 * 0.1 / 1_000
-    assert knots[2] - knots[1] == 16  # the narrow kink is looked at closely all the same
+    assert knots[2] - knots[1] == 16  # the narrow kink is examined closely all the same
     between = profile.at(np.concatenate([[0.0], np.cumsum(steps)]))
     np.testing.assert_allclose(path.psi, between[1], atol=1e-9)
 

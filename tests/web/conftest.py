@@ -1,6 +1,6 @@
 """The app in a real browser: `zerorev view` as a process of its own, its page in Debian's chromium.
 
-Whatever a test does, at its end its page must have written no error to the console, thrown none, and asked no other
+At the end of every test its page must have written no error to the console, thrown none, and asked no other
 host for anything. What a test brings about on purpose it names beforehand: `page.expected.append("...")`.
 """
 
@@ -173,7 +173,7 @@ def on_screen():
 
 @pytest.fixture
 def say(request):
-    """Has a measured figure told at the end of the run, also of a test that passes (`tests/conftest.py`)."""
+    """Reports a measured figure at the end of the run, also of a test that passes (`tests/conftest.py`)."""
     return lambda text: request.node.user_properties.append(("measured", text))
 
 

@@ -96,7 +96,7 @@ def test_what_cannot_be_used_is_refused_in_the_same_words(content, says):
     assert error.value.accepted
 
 
-def test_what_is_printed_is_no_result():
+def test_what_is_printed_is_not_a_result():
     assert list(Apart(hogs.echo).results([1, "two", b"three"])) == [1, "two", b"three"]
 
 

@@ -20,7 +20,7 @@ pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
 
 DEMO = (resources.files("zerorev.web") / "demo.yaml").read_text(encoding="utf-8")
-# a mouse tells where it is 60 times a second, whatever the page is at; the driver's own would wait for each to be drawn
+# a mouse says where it is 60 times a second, however busy the page is; the driver's own would wait for each to be drawn
 MOVES = """async ([x, y, reach, moves]) => {
     const map = document.querySelector('[data-testid="twist-map"] svg[role="group"]');
     for (let n = 1; n <= moves; n++) {
@@ -182,7 +182,7 @@ def test_from_a_drag_that_reverses_joint_4_to_the_program_of_the_command_line(re
 
 
 def test_a_drag_is_taken_back_and_made_again(ready, job, planned):
-    """By keys, whatever has the focus; and what the plan says of its margin is not said of a motion by hand."""
+    """By keys, with the focus on any element; and what the plan says of its margin is not said of a motion by hand."""
     before, bar = spins(ready), ready.locator(".zr-figures")
     expect(ready.get_by_test_id("undo")).to_be_disabled()
     assert re.search(r"margin\s*\+40\.8", bar.inner_text())
@@ -263,7 +263,7 @@ def test_the_keyboard_is_enough(ready, job, planned):
 
 
 def nudge(page):
-    """Take the motion in hand by a key; the spin at the target is then 10 degrees more."""
+    """Take the edited motion by a key; the spin at the target is then 10 degrees more."""
     before = spins(page)[1]
     page.get_by_test_id("handle-target").focus()
     page.keyboard.press("Shift+ArrowUp")
@@ -408,7 +408,7 @@ def test_a_thousand_holes_open_and_stay_usable(serve, open_page, say, tmp_path_f
     server = serve(folder / "panel.yaml")
     began = time.perf_counter()
     page = open_page(server)
-    page.wait_for_function(STANDS)  # looked at in every frame; an expectation looks after 0.1, 0.25, 0.5 and 1 s
+    page.wait_for_function(STANDS)  # examined in every frame; an expectation looks after 0.1, 0.25, 0.5 and 1 s
     stands = time.perf_counter() - began
     expect(page.get_by_test_id("holes-shown")).to_have_text("1000 holes")
     expect(page.get_by_test_id("holes")).to_contain_text("h0000")

@@ -31,7 +31,7 @@ def test_the_holes_and_the_motion_of_the_first_are_shown(page):
     assert "0 reversals: 1 hole" in page.get_by_test_id("cell-legend").inner_text()
 
 
-def test_an_answer_recolours_the_hole_and_builds_none_anew(page):
+def test_an_answer_recolours_the_hole_and_builds_none_again(page):
     page.evaluate(f"window.holes = {CELL}.holes")
     page.get_by_test_id("hole-next").click()
     until(page, f"{CELL}.holes.reversals[1] === 0")

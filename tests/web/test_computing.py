@@ -85,7 +85,7 @@ def test_all_holes_say_at_the_end_what_they_came_to(job):
     assert state.outcome is None  # of one hole, its own line says it all
 
 
-def test_keeps_and_certifies_a_motion_in_hand(job):
+def test_keeps_and_certifies_an_edited_motion(job):
     async def run():
         work = Work(Session(opened_job(job)))
         computing.plan_selected(work)
@@ -203,7 +203,7 @@ def test_many_results_change_the_page_five_times_a_second_at_most():
         work.start("counting", 200, run, lambda state, found: replace(state, selected=str(found[-1])))
         await until(lambda: not work.busy)
         assert session.state.selected == "199"
-        # the first, one each pause, and the last, at whatever pace the machine runs
+        # the first, one each pause, and the last, at any speed of the machine
         assert len(changes) <= 4 + (changes[-1] - changes[0]) / computing.PAUSE
 
     asyncio.run(run())

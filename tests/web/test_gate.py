@@ -261,7 +261,7 @@ def test_too_large_a_body_is_refused_while_it_is_read(guard):
     assert len(answer.sent) == 2  # of the app behind, not a word
 
 
-def test_whoever_goes_while_sending_is_no_fault(guard):
+def test_whoever_goes_while_sending_is_not_a_fault(guard):
     with pytest.raises(IndexError):  # nobody is there to be answered
         ask(guard, "POST", origin=f"http://{HERE}", body=(b"ab",), gone=True)
 

@@ -171,8 +171,8 @@ class TestMessages:
         fields = Fields()
         for n in range(3):
             fields["direction", n] = Field()
-        assert fields.show([(("direction",), InputError("is no direction"))])
-        assert fields["direction", 0].error == "is no direction"
+        assert fields.show([(("direction",), InputError("is not a direction"))])
+        assert fields["direction", 0].error == "is not a direction"
 
 
 class TestUndo:
@@ -211,7 +211,7 @@ class TestUndo:
             assert len(session.state.job.holes) == count
         assert session.state.job is job
 
-    def test_selecting_is_no_edit(self, job):
+    def test_selecting_is_not_an_edit(self, job):
         session = Session(opened_job(job))
         session.change(replace(session.state, selected=job.holes[2].id))
         assert not session.can_undo

@@ -1,4 +1,4 @@
-"""The table of the holes without a browser: what the grid is told of a change, and no more than that."""
+"""The table of the holes without a browser: what is sent to the grid on a change, and no more than that."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def session(robot, tool):
 
 
 @pytest.fixture
-def told(session, monkeypatch):
-    """Run edits with the table on a page; what its grid was told of them."""
+def reported(session, monkeypatch):
+    """Run edits with the table on a page; what was sent to its grid."""
 
     def run(*edits):
         calls = []
@@ -56,21 +56,21 @@ def lost(hole):
     return HolePlan(hole, "infeasible", 0.1, findings=(Finding("error", "limit", "why <b>", hole.id),))
 
 
-def test_an_answer_updates_its_own_row_alone(session, told):
+def test_an_answer_updates_its_own_row_alone(session, reported):
     hole = session.state.job.holes[2]
-    ((name, change), *_) = told(lambda _: session.change(answered(session.state, lost(hole))))
+    ((name, change), *_) = reported(lambda _: session.change(answered(session.state, lost(hole))))
     assert name == "applyTransaction"
     assert (change["add"], change["remove"]) == ([], [])
     assert [(row["id"], row["standing"], row["findings"]) for row in change["update"]] == [("H2", "infeasible", 1)]
 
 
-def test_looking_at_another_hole_changes_no_row(session, told):
-    assert not told(lambda _: session.change(selected(session.state, "H3")))
+def test_looking_at_another_hole_changes_no_row(session, reported):
+    assert not reported(lambda _: session.change(selected(session.state, "H3")))
 
 
-def test_a_hole_that_is_added_or_taken_out_is_all_that_is_told(session, told):
+def test_a_hole_that_is_added_or_taken_out_is_all_that_is_sent(session, reported):
     new = Hole("N", np.array([0.5, 0.1, 0.7]), np.array([1.0, 0, 0]), 0.03)
-    calls = told(
+    calls = reported(
         lambda _: session.change(with_hole(session.state, new)),
         lambda _: session.change(without_hole(session.state, "H1")),
     )
@@ -80,23 +80,23 @@ def test_a_hole_that_is_added_or_taken_out_is_all_that_is_told(session, told):
     assert removed["remove"] == [{"id": "H1"}]
 
 
-def test_an_undo_puts_the_row_back_where_it_was(session, told):
-    calls = told(lambda _: session.change(without_hole(session.state, "H1")), lambda _: session.undo())
+def test_an_undo_puts_the_row_back_where_it_was(session, reported):
+    calls = reported(lambda _: session.change(without_hole(session.state, "H1")), lambda _: session.undo())
     _, what, rows = next(call for call in calls if call[0] == "setGridOption")
     assert what == "rowData"
     assert [row["id"] for row in rows] == ["H0", "H1", "H2", "H3"]
 
 
-def test_the_filter_lets_through_what_matches_and_says_how_many(session, told):
+def test_the_filter_lets_through_what_matches_and_says_how_many(session, reported):
     words = []
 
     def look(table):
-        table.told = words.append
+        table.show_count = words.append
         table.filter(matching("h1"))
         table.filter(matching("h1"))
         table.filter(None)
 
-    calls = told(look)
+    calls = reported(look)
     passes = [call[1][":doesExternalFilterPass"] for call in calls if call[0] == "updateGridOptions"]
     assert len(passes) == 2
     assert '["H1"]' in passes[0]

@@ -1,4 +1,4 @@
-"""Files in the browser: read beside the page, whatever is in them; and as large as the command line takes them."""
+"""Files in the browser: read beside the page, with any content; and as large as the command line takes them."""
 
 from __future__ import annotations
 

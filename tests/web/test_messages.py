@@ -16,7 +16,7 @@ BROKEN = """() => {
     const trouble = document.querySelector('[data-testid="trouble"]');
     trouble.classList.remove("hidden");
     trouble.children[1].textContent = "a fault in zerorev itself; the terminal says more";
-    const others = { "zr-none": "This could not be drawn", "zr-map-error": "is no number" };
+    const others = { "zr-none": "This could not be drawn", "zr-map-error": "is not a number" };
     for (const [look, words] of Object.entries(others)) {
         const made = document.createElement("div");
         made.className = look;

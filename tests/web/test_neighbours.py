@@ -49,7 +49,7 @@ TRIES = """async (origin) => {
 
 
 class Neighbour(ThreadingHTTPServer):
-    """Whoever serves another port of this machine; keeps whatever browsers send it."""
+    """Serves another port of this machine; keeps all that browsers send it."""
 
     def __init__(self):
         self.heard = []
@@ -175,7 +175,7 @@ def test_a_browser_that_never_had_the_token_stands_at_the_door(demo, open_page):
     expect(page.get_by_test_id("door")).to_contain_text("the address that `zerorev view` printed")
 
 
-def test_a_doubled_tab_goes_on_by_itself(demo, open_page):
+def test_a_doubled_tab_continues_on_its_own(demo, open_page):
     page = open_page(demo)
     planned(page)
     page.get_by_test_id("holes").get_by_text("position_2").first.click()

@@ -1,4 +1,4 @@
-"""The page without a browser: which parts it has, and when it is drawn anew."""
+"""The page without a browser: which parts it has, and when it is drawn again."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_the_holes_are_there_before_the_pictures_and_no_form_before_it_is_opened
     assert not {"settings-form", "hole-form", "paste-form"} & last
 
 
-def test_a_page_that_is_drawn_anew_before_it_is_complete_has_each_picture_once(shown, monkeypatch):
+def test_a_page_that_is_drawn_again_before_it_is_complete_has_each_picture_once(shown, monkeypatch):
     def count(session):
         names = [each.props.get("data-testid") for each in ui.context.client.elements.values()]
         assert [names.count(name) for name in ("twist-map", "cell", "bracket", "curves")] == [1] * 4
@@ -131,12 +131,12 @@ def test_a_picture_with_a_fault_says_so_and_the_others_are_drawn(shown, monkeypa
     assert "on purpose" in caplog.text
 
 
-def test_a_hole_without_an_answer_is_planned_when_it_is_looked_at(shown):
+def test_a_hole_without_an_answer_is_planned_when_it_is_selected(shown):
     _, _, planned = shown(demo(), lambda session: session.change(selected(session.state, "position_2")))
     assert planned == 2
 
 
-def test_another_file_draws_the_page_anew_and_no_part_of_the_old_one_is_told(shown):
+def test_another_file_draws_the_page_again_and_no_part_of_the_old_one_is_called(shown):
     views = []
 
     def reopen(session):

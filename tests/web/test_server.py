@@ -1,4 +1,4 @@
-"""The server: reached from this machine alone, with the token alone; it ends without a trace, whatever is under way."""
+"""The server: reached from this machine alone, with the token alone; it ends without a trace, also during work."""
 
 from __future__ import annotations
 
@@ -258,7 +258,7 @@ def test_work_outlives_its_page_and_ends_with_the_app(tmp_path):
         )
         async with web:
             async with Page(address, web, "one") as page:
-                await page.text("planning hole R0C0")  # which is looked at first, and so planned unasked
+                await page.text("planning hole R0C0")  # which is selected first, and so planned unasked
                 await page.find("progress", shown=False)
                 await page.tell("scope", "update:modelValue", 1)
                 await page.tell("plan", "click", {})

@@ -13,28 +13,28 @@ from zerorev.web.session import Session
 from zerorev.web.state import State, Steered, opened_job, selected, steered, with_hole, without_hole
 
 
-def test_views_are_told_of_changes_and_of_nothing_else():
-    session, told = Session(State()), []
-    session.watch(lambda before, after: told.append((before, after)))
+def test_views_are_called_on_changes_and_on_nothing_else():
+    session, reported = Session(State()), []
+    session.watch(lambda before, after: reported.append((before, after)))
     first, second = session.state, State(selected="a")
     session.change(first)
     session.change(second)
-    assert told == [(first, second)]
+    assert reported == [(first, second)]
     assert session.state is second
     session.unwatch()
     session.change(first)
-    assert len(told) == 1
+    assert len(reported) == 1
 
 
 def test_a_view_that_was_let_go_meanwhile_hears_no_more():
-    session, told = Session(State()), []
+    session, reported = Session(State()), []
     session.watch(lambda before, after: session.unwatch())
-    session.watch(lambda before, after: told.append(after))
+    session.watch(lambda before, after: reported.append(after))
     session.change(State(selected="a"))
-    assert not told
+    assert not reported
 
 
-def test_views_are_told_within_the_page():
+def test_views_are_called_within_the_page():
     session, order = Session(State()), []
 
     @contextmanager
@@ -44,18 +44,18 @@ def test_views_are_told_within_the_page():
         order.append("out")
 
     session.page = page
-    session.watch(lambda before, after: order.append("told"))
+    session.watch(lambda before, after: order.append("called"))
     session.change(State(selected="a"))
-    assert order == ["in", "told", "out"]
+    assert order == ["in", "called", "out"]
 
 
 def test_two_sessions_share_nothing():
     one, other = Session(State()), Session(State())
-    told = []
-    other.watch(lambda before, after: told.append(after))
+    reported = []
+    other.watch(lambda before, after: reported.append(after))
     one.change(State(selected="a"))
     assert other.state.selected is None
-    assert not told
+    assert not reported
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def test_edits_and_drags_are_one_history_there_and_back(session):
     first = session.state
     session.change(without_hole(first, first.job.holes[2].id))
     edited, drag = session.state, object()
-    for spin in (0.1, 0.2, 0.3):  # a drag is told in pieces
+    for spin in (0.1, 0.2, 0.3):  # a drag is sent in pieces
         session.change(steered(session.state, motion(spin)), of=drag)
     dragged = session.state
     session.change(steered(session.state, motion(0.4)), of=object())
@@ -105,7 +105,7 @@ def test_a_motion_that_was_let_go_by_looking_elsewhere_comes_back(session):
     assert session.state.steered.profile.psi[0] == 0.1
 
 
-def test_looking_at_holes_is_no_step(session):
+def test_looking_at_holes_is_not_a_step(session):
     session.change(selected(session.state, session.state.job.holes[1].id))
     assert not session.can_undo
 

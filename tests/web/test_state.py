@@ -62,22 +62,22 @@ def test_a_plan_in_pieces_is_the_plan_of_the_command_line(job, planned):
     assert plan_to_json(plan_of(state)) == plan_to_json(planned)
 
 
-def test_looking_at_another_hole_lets_the_motion_in_hand_go(state, job):
+def test_looking_at_another_hole_lets_the_edited_motion_go(state, job):
     by_hand = Steered(shown(state).profile.reversed(), 2)
-    in_hand = steered(state, by_hand)
-    assert shown(in_hand) is by_hand
-    other = selected(in_hand, job.holes[1].id)
+    edited = steered(state, by_hand)
+    assert shown(edited) is by_hand
+    other = selected(edited, job.holes[1].id)
     assert other.steered is None
     assert other.hole is job.holes[1]
-    assert selected(in_hand, job.holes[0].id) is in_hand
+    assert selected(edited, job.holes[0].id) is edited
     with pytest.raises(InputError, match="no hole 'x'"):
         selected(state, "x")
 
 
-def test_an_answer_takes_the_place_of_the_motion_in_hand_of_its_hole_alone(state, planned):
-    in_hand = steered(state, Steered(shown(state).profile, 0))
-    assert answered(in_hand, planned.holes[0]).steered is None
-    assert answered(in_hand, planned.holes[1]).steered is in_hand.steered
+def test_an_answer_takes_the_place_of_the_edited_motion_of_its_hole_alone(state, planned):
+    edited = steered(state, Steered(shown(state).profile, 0))
+    assert answered(edited, planned.holes[0]).steered is None
+    assert answered(edited, planned.holes[1]).steered is edited.steered
 
 
 def test_answers_of_what_was_edited_meanwhile_are_not_taken(job, planned):
@@ -89,7 +89,7 @@ def test_answers_of_what_was_edited_meanwhile_are_not_taken(job, planned):
     assert not answered(State(), planned.holes[0]).answers
 
 
-def test_a_motion_kept_by_hand_is_an_answer_whatever_branch_it_is_on(job):
+def test_a_motion_kept_by_hand_is_an_answer_on_any_branch(job):
     first = job.holes[0]
     by_hand = plan(job.robot, job.tool, replace(first, profile=shown_profile(job), branch=0))
     assert answered(opened_job(job), by_hand).answer is by_hand

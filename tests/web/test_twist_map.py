@@ -38,10 +38,10 @@ def session(robot, tool):
 
 
 class Component:
-    """Stands in for the component in the browser: keeps what it is told."""
+    """Stands in for the component in the browser: keeps what it is reported."""
 
     def __init__(self):
-        self.told = []
+        self.reported = []
         self.handlers = {}
 
     def classes(self, _):
@@ -51,10 +51,10 @@ class Component:
         self.handlers[name] = handler
 
     def run_method(self, name, *args):
-        self.told.append((name, *args))
+        self.reported.append((name, *args))
 
     def last(self, name):
-        return next(args for each, *args in reversed(self.told) if each == name)[0]
+        return next(args for each, *args in reversed(self.reported) if each == name)[0]
 
 
 @pytest.fixture
@@ -101,18 +101,18 @@ def test_the_plan_is_shown_first(on_page, session):
     async def nothing(component, do):
         pass
 
-    told = on_page(nothing)
-    motion = told.last("show_motion")
+    reported = on_page(nothing)
+    motion = reported.last("show_motion")
     assert motion["reversals"] == 0
     assert motion["runs"]
-    assert not motion["in_hand"]
+    assert not motion["edited"]
     assert np.array(motion["points"]) == pytest.approx(np.array([[50, 20.6], [0, 1.12], [50, -25.37]]))
     score = session.state.answer.score
     assert float(motion["travel"]) == pytest.approx(np.rad2deg(score.travel), abs=0.06)
     assert float(motion["margin"]) == pytest.approx(np.rad2deg(score.min_rate.min()) * 1e-3, abs=6e-4)
     assert motion["baseline"] == 6
-    assert told.last("show_map")["branch"] == POSITIONS[0].branch
-    labels = {each["value"]: each["label"] for each in told.last("show_branches")}
+    assert reported.last("show_map")["branch"] == POSITIONS[0].branch
+    labels = {each["value"]: each["label"] for each in reported.last("show_branches")}
     assert list(labels) == [*"01234567", "all"]
     assert labels[str(POSITIONS[0].branch)].endswith("0 reversals")
 
@@ -162,7 +162,7 @@ def test_a_drag_is_answered_at_once_and_passed_on_later(on_page, session, robot,
             assert answer["reversals"] == score.reversals
             assert [each["count"] for each in answer["joints"]] == list(score.reversals_per_joint)
             assert [mark["joint"] for mark in answer["marks"]] == [event.joint for event in score.events]
-            assert answer["in_hand"]
+            assert answer["edited"]
         assert changes == []
         await asyncio.sleep(view.SOONEST + 0.2)
         assert len(changes) == 1  # three drags, one change
@@ -177,13 +177,13 @@ def test_a_drag_is_answered_at_once_and_passed_on_later(on_page, session, robot,
 def test_a_drag_draws_neither_the_field_nor_the_branches(on_page):
     async def exchange(component, do):
         await asyncio.sleep(0)
-        component.told.clear()
+        component.reported.clear()
         do("grab")
         for seq in range(1, 6):
             do("drag", points=points((14.16, -seq, -14.0)), seq=seq, ms=10.0)
         await asyncio.sleep(view.SOONEST + 0.2)
-        assert {name for name, *_ in component.told} == {"show_motion"}
-        assert len(component.told) == 5  # its own change of the state is not answered once more
+        assert {name for name, *_ in component.reported} == {"show_motion"}
+        assert len(component.reported) == 5  # its own change of the state is not answered once more
 
     on_page(exchange)
 
@@ -247,7 +247,7 @@ def test_a_drag_is_one_step_and_one_that_is_escaped_is_none(on_page, session):
         session.undo()
         assert not session.can_undo
         shown = component.last("show_motion")
-        assert (shown["in_hand"], shown["reversals"]) == (False, 0)
+        assert (shown["edited"], shown["reversals"]) == (False, 0)
         session.redo()
         assert np.array(component.last("show_motion")["points"])[:, 1] == pytest.approx([1, 2.5, 3])
 
@@ -258,11 +258,11 @@ def test_back_to_the_plan(on_page, session):
     async def exchange(component, do):
         do("grab")
         do("drop", points=points((1, 2, 3)))
-        assert component.last("show_motion")["in_hand"]
+        assert component.last("show_motion")["edited"]
         do("let_go")
         assert session.state.steered is None
         shown = component.last("show_motion")
-        assert (shown["reversals"], shown["in_hand"]) == (0, False)
+        assert (shown["reversals"], shown["edited"]) == (0, False)
 
     on_page(exchange)
 
@@ -330,7 +330,7 @@ def test_a_hole_without_a_plan_shows_all_branches_and_says_so(on_page, session):
     on_page(exchange)
 
 
-def test_an_answer_takes_the_place_of_what_was_in_hand(on_page, session):
+def test_an_answer_takes_the_place_of_what_was_edited(on_page, session):
     async def exchange(component, do):
         do("grab")
         do("drag", points=points((1, 2, 3)), seq=1, ms=1.0)
@@ -350,7 +350,7 @@ def test_who_steps_through_the_holes_waits_for_the_last_map_alone(on_page, sessi
         gate = asyncio.Event()
 
         async def slowly(call):
-            asked.append(call.args[2].id)
+            asked.append(call.args[0].hole.id)
             await gate.wait()
             return call()
 

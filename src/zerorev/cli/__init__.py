@@ -1,6 +1,6 @@
 """The command line: arguments in, calls out.
 
-Whatever takes long to import is imported by the command that needs it, so that `--help` answers at once.
+A module that takes long to import is imported by the command that needs it, so that `--help` answers at once.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ class Proofs(NamedTuple):
     sample: int | None
 
     def check(self, *, program: bool) -> None:
-        """Refuse options that contradict each other, or that are no number of boxes.
+        """Refuse options that contradict each other, or that do not state a number of boxes.
 
         Raises:
             InputError: they do, or are not.
@@ -36,7 +36,7 @@ class Proofs(NamedTuple):
         if self.sample is not None and not self.wanted:
             raise InputError("has no use", where="--proof-sample", accepted="--proof beside it")
         if self.sample is not None and self.sample < 0:
-            raise InputError(f"{self.sample} is no number of boxes", where="--proof-sample", accepted="0 or more")
+            raise InputError(f"{self.sample} is not a number of boxes", where="--proof-sample", accepted="0 or more")
         if self.wanted and program:
             raise InputError("a program states nothing of its optimality", where="--proof", accepted="no --program")
 

@@ -13,7 +13,7 @@ __all__ = ["rates"]
 
 @app.command
 def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> int:
-    """Show the critical twist rates of each hole and what they foretell, before any search.
+    """Show the critical twist rates of each hole and what they predict, before any search.
 
     Args:
         job: The job file (YAML): robot, tool, holes.
@@ -38,10 +38,10 @@ def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> 
         else:
             terminal.out().print(shown.rates_table(wanted, found))
         return FINE
-    foretold = [predict(Drilling(wanted.robot, wanted.tool, hole), wanted.settings) for hole in wanted.holes]
+    predicted = [predict(Drilling(wanted.robot, wanted.tool, hole), wanted.settings) for hole in wanted.holes]
     if json:
-        pairs = zip(wanted.holes, foretold, strict=True)
-        terminal.print_json([shown.foretold_data(hole, each) for hole, each in pairs])
+        pairs = zip(wanted.holes, predicted, strict=True)
+        terminal.print_json([shown.predicted_data(hole, each) for hole, each in pairs])
     else:
-        terminal.out().print(shown.foretold_table(wanted, foretold))
+        terminal.out().print(shown.predicted_table(wanted, predicted))
     return FINE

@@ -25,22 +25,22 @@ def reproduce(
     """Reproduce the thesis as one page: its figures and tables, ours by its own method, ours by the exact method.
 
     DIR holds the page, index.html, and the figures (PNG) and tables (CSV) as files. Each section is kept when it is
-    done; after an interruption the same command goes on from there.
+    done; after an interruption the same command resumes.
 
     Args:
         chapter: chapter4, or all that there is; chapter5 is not there yet.
         output: The folder; it is made if its parent exists.
-        seeds: Runs of the swarm from which rates are told; fewer are quicker.
+        seeds: Runs of the swarm from which rates are estimated; fewer are quicker.
         map_size: Cells of the parameter map along each axis.
     """
     for package in ("matplotlib", "xarray", "jinja2"):
         need(package, package, "reproduce", "report")
 
     from zerorev.thesis.reproduce.context import Context
-    from zerorev.thesis.reproduce.progress import told
+    from zerorev.thesis.reproduce.progress import progress_lines
     from zerorev.thesis.reproduce.runner import reproduce as make_page
 
-    with told() as teller:
+    with progress_lines() as teller:
         page = make_page(chapter, output, Context(seeds, map_size), teller)
     terminal.say(f"page written to {page}, its figures and tables beside it")
     return FINE

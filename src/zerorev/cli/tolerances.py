@@ -30,17 +30,17 @@ class Tolerances(NamedTuple):
     ratio: float | None
 
     def check(self, *, certify: bool, program: bool) -> None:
-        """Refuse options that contradict each other, or that are no tolerance.
+        """Refuse options that contradict each other, or values that are not a tolerance.
 
         Raises:
             InputError: they do, or are not.
         """
         for name, value in (("--tolerance-mm", self.mm), ("--tolerance-deg", self.deg)):
             if value is not None and not (math.isfinite(value) and value >= 0):
-                raise InputError(f"{value:g} is no tolerance", where=name, accepted="a finite number, 0 or more")
+                raise InputError(f"{value:g} is not a tolerance", where=name, accepted="a finite number, 0 or more")
         if self.ratio is not None and not (math.isfinite(self.ratio) and self.ratio > 0):
             raise InputError(
-                f"{self.ratio:g} is no ratio",
+                f"{self.ratio:g} is not a ratio",
                 where="--tolerance-ratio",
                 accepted="a finite number of mm per deg above 0",
             )

@@ -1,4 +1,4 @@
-"""Where results go: looked at before long work begins, and written whole or not at all."""
+"""Where results go: examined before long work begins, and written whole or not at all."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def place_of(path: str | Path) -> Path:
             except FileNotFoundError:
                 raise OutputError(str(path), f"the folder {target.parent} does not exist") from None
             if not folder.is_dir():
-                raise OutputError(str(path), f"{target.parent} is no folder")
+                raise OutputError(str(path), f"{target.parent} is not a folder")
             target = folder / target.name
             if not stat.S_ISLNK(_mode(target)):
                 return target

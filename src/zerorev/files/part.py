@@ -1,6 +1,6 @@
 """The part of a plan that is finished: one line a hole, beside the file that they become.
 
-A run that is interrupted, killed or out of power leaves it behind. The same command goes on from there, and what reads
+A run that is interrupted, killed or out of power leaves it behind. The same command resumes, and what reads
 plan files reads it, too.
 """
 
@@ -39,7 +39,7 @@ SUM = 9  # [bytes] at the end of a line: a blank, and the CRC-32 of what stands 
 
 
 class Part:
-    """The finished holes of a job; used in a `with` statement, after which it is gone unless it can be gone on from.
+    """The finished holes of a job; used in a `with` statement, after which it is gone unless it can be resumed from.
 
     Attributes:
         path: of the file: that of the plan, with `.part` behind it.
@@ -47,7 +47,7 @@ class Part:
     """
 
     def __init__(self, target: str | Path, plan: Plan, holes: Sequence[Hole]) -> None:
-        """Begin a part, or go on with one that is there.
+        """Begin a part, or continue with one that is there.
 
         Args:
             target: the file that it becomes.
@@ -87,7 +87,7 @@ class Part:
                 raise InputError(
                     "holds the finished holes of another job, of other settings or of another version",
                     where=str(self.path),
-                    accepted="the command that began it; or delete it to begin anew",
+                    accepted="the command that began it; or delete it to begin again",
                 )
             if there != first:
                 self._stream.truncate(0)
@@ -163,7 +163,7 @@ def _check_replaced(target: Path, name: str) -> None:
 
 
 def part_document(text: str, file: str) -> Document | None:
-    """A part as the plan of its finished holes, with a finding that says what it is; None where the text is no part.
+    """A part as the plan of its finished holes, with a finding that says what it is; None where the text is not a part.
 
     Args:
         text: of the file.
@@ -178,7 +178,7 @@ def part_document(text: str, file: str) -> Document | None:
     match entries:
         case [{"head": {"findings": [*findings], **head}, "holes": int(count)}, _, *_]:
             message = (
-                f"only {len(entries) - 1} of {count} holes are finished; the command that began it goes on with it"
+                f"only {len(entries) - 1} of {count} holes are finished; the command that began it continues with it"
             )
             unfinished = {"level": "error", "kind": UNFINISHED, "message": message, "hole": None}
             return Document(file, head | {"holes": entries[1:], "findings": [*findings, unfinished]})

@@ -1,6 +1,6 @@
 """Between the disk and plain data: text, JSON and CSV in, JSON out; YAML is in `zerorev.files.yaml_text`.
 
-Whatever the bytes are, reading them ends in plain data or in an `InputError` that names the file and the line. Sizes
+For any bytes, reading them ends in plain data or in an `InputError` that names the file and the line. Sizes
 and counts are limited, so that it ends soon, and in a memory that is known beforehand (docs/security.md has figures).
 """
 
@@ -180,7 +180,7 @@ def json_document(text: str, file: str) -> Document:
 
 
 def json_text(data: Any) -> str:
-    """Plain data as JSON that people can read: whatever fits on a line stands on one."""
+    """Plain data as JSON that people can read: what fits on one line stands on one."""
     return as_json(_laid_out(data, 0, 0)) + "\n"
 
 

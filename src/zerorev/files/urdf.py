@@ -140,7 +140,7 @@ def _xml(path: Path) -> Any:
         message = "holds a document type or entities, which are not read"
         raise InputError(message, where=str(path), accepted="plain XML") from None
     except (ParseError, ValueError, LookupError) as error:  # LookupError: an encoding that nobody knows
-        raise InputError(f"is no XML: {error}", where=str(path), accepted="a URDF file") from None
+        raise InputError(f"is not XML: {error}", where=str(path), accepted="a URDF file") from None
     if root.tag != "robot":
         raise InputError(
             f"begins with <{root.tag}>", where=str(path), accepted="<robot>: a URDF file, not xacro or SDF"

@@ -89,7 +89,7 @@ def problems(form: type[Form], document: Document) -> list[tuple[FieldPath, Inpu
 
 @contextmanager
 def inside(where: str) -> Iterator[None]:
-    """Put the file in front of whatever an `InputError` from within says about where it arose."""
+    """Put the file in front of what an `InputError` from within says about where it arose."""
     try:
         yield
     except InputError as error:

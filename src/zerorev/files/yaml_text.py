@@ -158,7 +158,7 @@ def _refuse(problem: str, event: Event) -> NoReturn:
 
 
 class _Dumper(yaml.SafeDumper):
-    """Puts into quotes whatever would not be read as text again."""
+    """Puts into quotes all that would not be read as text again."""
 
     yaml_implicit_resolvers = {}  # noqa: RUF012  PyYAML's own way
 

@@ -131,7 +131,7 @@ class Difference:
 
     @property
     def change(self) -> Array:
-        """Second less first, NaN where it cannot be told, shape (T, D).
+        """Second less first, NaN where it is unknown, shape (T, D).
 
         Where no stroke is possible, the deepest is 0; cells without an answer in either map are left out.
         """

@@ -79,7 +79,7 @@ def planes_of(found: Field, direction: int = 0, across: Across | None = None) ->
             the one that the direction is nearest to.
 
     Raises:
-        InputError: the targets are no grid; a direction that the map lacks.
+        InputError: the targets do not form a grid; a direction that the map lacks.
     """
     if not 0 <= direction < len(found.direction):
         raise InputError(f"direction {direction}", accepted=f"0 to {len(found.direction) - 1}")
@@ -87,7 +87,7 @@ def planes_of(found: Field, direction: int = 0, across: Across | None = None) ->
     axes, places = [values for values, _ in grid], tuple(place.ravel() for _, place in grid)
     shape = tuple(axis.size for axis in axes)
     if np.unique(np.ravel_multi_index(places, shape)).size != len(found.target) or np.prod(shape) != len(found.target):
-        raise InputError("its targets are no grid, so it has no planes", accepted="a map on a grid")
+        raise InputError("its targets do not form a grid, so it has no planes", accepted="a map on a grid")
     value = np.empty(shape)
     value[places] = found.value[:, direction]
     drill = found.direction[direction]

@@ -1,7 +1,7 @@
 """Whether a folder of zarr can be opened without harm: before any library of zarr looks into it.
 
 A store names the codecs that it is to be read with, and some of those that exist run what they read; it states its own
-shape, and any shape fits into a line. So the description of each array is looked at first, and each file be a file.
+shape, and any shape fits into a line. So the description of each array is examined first, and each file be a file.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ CODECS = frozenset({"bytes", "zstd", "crc32c", "gzip", "blosc", "transpose"})
 MOST_ENTRIES = 4_000_000  # files and folders
 MOST_HEAD = 2**23  # [bytes] of a description; the ids of points stand in one
 MOST_ARRAYS = 100
-LEAST_BYTES = 2**27  # that may be declared whatever the files hold
+LEAST_BYTES = 2**27  # that may be declared regardless of what the files hold
 SQUEEZED = 5_000  # times smaller than what it declares no map is on the disk, once it has begun
 TARGETS = ("x_mm", "y_mm", "z_mm")
 DIRECTIONS = ("direction_x", "direction_y", "direction_z")
 
 
 def check_store(path: Path, accepted: str) -> None:
-    """Refuse a folder that is no store of plain numbers, or one that declares far more of them than it can hold.
+    """Refuse a folder that is not a store of plain numbers, or one that declares far more of them than it can hold.
 
     Args:
         path: the folder.
@@ -99,7 +99,7 @@ class _NotReadError(ValueError):
 def _said(error: Exception) -> str:
     if isinstance(error, _NotReadError):
         return str(error)
-    return (isinstance(error, OSError) and error.strerror) or f"its description is no description ({error})"
+    return (isinstance(error, OSError) and error.strerror) or f"its description cannot be read ({error})"
 
 
 def _held(path: Path) -> int:

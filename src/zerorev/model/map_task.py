@@ -18,7 +18,7 @@ from zerorev.model.tool import Tool
 
 __all__ = ["MapTask", "Question", "cone", "sphere"]
 
-NOMINAL_DEPTH = 1e-3  # [m] of a hole whose depth is not looked at
+NOMINAL_DEPTH = 1e-3  # [m] of a hole whose depth is not examined
 GOLDEN_TURN = np.pi * (3 - np.sqrt(5))
 BASE_WALL = 0.05  # [m] that a robot's base reaches, at the very least, beyond where axis 2 turns about axis 1
 

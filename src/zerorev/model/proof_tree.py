@@ -29,7 +29,7 @@ class Claim:
         psi_bound: spins within +- this [rad]; 0: periodic.
         branch: the only one that counts (conventions: branch), or None.
         weights: what a reversal of each joint costs, shape (6,).
-        most_cost: what a motion may cost in reversals at the most.
+        most_cost: what a motion may cost in reversals at most.
         value: none is below; NO_VALUE: there is no motion.
     """
 

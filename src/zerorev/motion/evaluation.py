@@ -26,7 +26,7 @@ FEW_TURNS = 32  # reversals for which there is room at first
 
 @dataclass(frozen=True)
 class Evaluation:
-    """A motion looked at: its joints and score where it can be run, and what is wrong where it cannot.
+    """A motion examined: its joints and score where it can be run, and what is wrong where it cannot.
 
     Attributes:
         motion: the joints at the breakpoints, or None.

@@ -68,7 +68,7 @@ def inverse(robot: Robot, T_base_flange: npt.ArrayLike) -> Array:
     """Controller angles within (-pi, pi], shape (..., 8, 6), of flange poses (..., 4, 4).
 
     All eight branches in their fixed order (conventions: branch), a row of NaN where one cannot reach. Joint limits are
-    not looked at.
+    not examined.
 
     Raises:
         InputError: the last axes are not a pose.

@@ -14,7 +14,7 @@ from zerorev.placement.margins import Margins, least
 
 __all__ = ["Slice", "room", "slices"]
 
-STRIDES = 16  # of the freedom along an axis, at which holes are looked at on the way out
+STRIDES = 16  # of the freedom along an axis, at which holes are examined on the way out
 CLOSE = 10 * FINEST  # to which the end of the room is closed in on
 TOO_SHALLOW = float(np.nextafter(0.0, -1.0))  # the greatest margin that is none
 
@@ -39,14 +39,14 @@ class Slice:
 def room(margins: Margins, freedom: Freedom, place: Array, tell: Progress) -> Array:
     """How far the part may be moved along each axis before some hole is too shallow [m or rad], shape (4, 2).
 
-    It is looked at in strides of a sixteenth of the freedom, and the first stride that ends too shallow is halved down
+    It is examined in strides of a sixteenth of the freedom, and the first stride that ends too shallow is halved down
     to 0.1 mm or 0.01 deg.
 
     Args:
         margins: asks about places.
-        freedom: beyond which nothing is looked at.
+        freedom: beyond which nothing is examined.
         place: where every hole is deep enough, shape (4,).
-        tell: told how far it is.
+        tell: called with the progress.
     """
     ends = {(axis, side): (freedom.lower, freedom.upper)[side][axis] - place[axis]
             for axis in freedom.granted for side in (0, 1)}  # fmt: skip
@@ -88,7 +88,7 @@ def slices(margins: Margins, freedom: Freedom, place: Array, cells: int, tell: P
         freedom: whose axes.
         place: that they go through, shape (4,).
         cells: along each axis.
-        tell: told how far it is.
+        tell: called with the progress.
     """
     axes = freedom.granted
     shown = list(combinations(axes, 2)) if len(axes) > 1 else [(axis,) for axis in axes]

@@ -116,11 +116,11 @@ def offset_curve(
     Args:
         robot: the arm.
         tool: the drill, moved as `with_offset` has it.
-        holes: what to drill; given motions are not looked at.
+        holes: what to drill; given motions are not examined.
         settings: how deep is deep: legs, threshold, bound on the spin.
         offsets: e [m], shape (E,), rising, 0 or more.
         angles: [rad], shape (A,); None for the tool's own.
-        progress: told how many strokes are known, and of how many.
+        progress: called with the number of strokes known and in all.
 
     Raises:
         InputError: no offset or angle, or offsets that do not rise from 0 or more.

@@ -70,7 +70,8 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         tool: the drill on its flange.
         hole: where to drill; its branch is the only one searched. Where its depth, or the motion that it gives, has no
             reversal, the stroke is no less deep; else neither matters.
-        settings: how; None for the defaults. Every joint keeps `min_rate` at every point, whatever the `min_rate_rule`.
+        settings: how; None for the defaults. Every joint keeps `min_rate` at every point, regardless of the
+            `min_rate_rule`.
 
     Returns:
         the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
@@ -149,7 +150,7 @@ def _answered(
 def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:
     """The answer to a given motion on its branch; where none is given, on the one that thesis eq. 4.7 prefers.
 
-    Which branch a published motion belongs to is no question of the motion threshold, so the thesis' own objective
+    Which branch a published motion belongs to does not depend on the motion threshold, so the thesis' own objective
     answers it, and not the order by which motions are searched for.
     """
     branches = range(8) if drilling.hole.branch is None else (drilling.hole.branch,)

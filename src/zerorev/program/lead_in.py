@@ -123,7 +123,7 @@ def find_lead_in(drilling: Drilling, motion: Motion, wanted: float) -> LeadIn:
     if trouble is None:
         return LeadIn(wanted, joints[-1], ())
     why = trouble.why
-    # look again between the last good sample and the first bad one, until they meet: bisection, 200 parts at a time
+    # search between the last good sample and the first bad one, until they meet: bisection, 200 parts at a time
     while trouble is not None and trouble.sample > 0 and standoff[1] - standoff[0] > CLOSE_ENOUGH * robot.size:
         good = trouble.sample - 1
         standoff, anchor = np.linspace(standoff[good], standoff[good + 1], SAMPLES), joints[good]

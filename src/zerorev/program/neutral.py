@@ -2,7 +2,7 @@
 
 The tool frame *as written* has X along the plunge (X = -Z_tcp), Y = Y_tcp and so Z = X_tcp. The hole's axis is then the
 X direction of every pose of a hole, and the spin is a turn about X alone: of KUKA's angles (A, B, C about Z, Y', X'')
-only C varies along a hole, whatever the direction of the hole. The tool as the thesis draws it does not have this, and
+only C varies along a hole, for any direction of the hole. The tool as the thesis draws it does not have this, and
 passes the singularity of those angles within the range of position 1.
 """
 

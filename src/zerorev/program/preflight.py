@@ -1,4 +1,4 @@
-"""What is looked at before a program is written: speeds, turns, poses, and what the program tells about itself."""
+"""What is examined before a program is written: speeds, turns, poses, and what the program tells about itself."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding
     for standoff, psi, move in segments(hole):
         rates = _rates(plan, hole_plan, standoff, psi, move)
         if np.isnan(rates).any():
-            message = f"a singularity on the {move.leg}: no joint speed can be told"
+            message = f"a singularity on the {move.leg}: the joint speeds are undefined"
             return (Finding("error", "joint_speed", message, hole.id),)
         peak = np.abs(rates).max(axis=0)
         share = peak * move.feed / allowed

@@ -11,7 +11,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Goal, Legs, bettered, motion_of, sense_at
+from zerorev.search.segments import Goal, Legs, improved, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, constraints
 
 __all__ = ["cut_short", "descended", "legs_swapped", "steadied"]
@@ -92,7 +92,7 @@ def _moved(
     psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
     legs = Legs(np.array([[0.0, depth]] * 2), psi)
     rules = constraints(robot, settings, min_rate, steepest=settings.max_twist if settings.legs == "free" else np.inf)
-    moved, lack = bettered(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, looks=POINTS)
+    moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, looks=POINTS)
     if lack > ENOUGH_LACK:
         return None
     return order.candidate(motion_of(moved, periodic=settings.psi_bound is None), branch)

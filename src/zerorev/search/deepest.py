@@ -1,9 +1,9 @@
 """The deepest stroke of a hole that has no reversal, over all branches (theory §4).
 
 A leg that keeps its directions to some depth keeps them to any lesser one, so the greatest margin that a pair of legs
-can have falls as the stroke grows. A coarse look at growing depths tells which spins at the target are in question;
-from each of those left the two legs are bettered, the depth being one of their unknowns, to where nothing more is to be
-had, and the deepest is taken.
+can have falls as the stroke grows. A coarse sample at growing depths shows which spins at the target are in question.
+From each of those that are left the two legs are improved, with the depth as one of their unknowns, until no gain is
+possible. The deepest is taken.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.search.free_deepest import deepest_free
 from zerorev.search.rank import Candidate
-from zerorev.search.segments import STEPS, Goal, Legs, bettered, motion_of, sense_at
+from zerorev.search.segments import STEPS, Goal, Legs, improved, motion_of, sense_at
 from zerorev.search.straight import GRID, LEAST_RATE, constraints, target_spins
 
 __all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_of", "deepest_stroke"]
 
-FIRST_LOOK = 0.06  # of the stretched arm's length: about what a middling hole allows
-STEP = 1.5  # from one depth of the coarse look to the next
+FIRST_DEPTH = 0.06  # of the stretched arm's length: about what a middling hole allows
+STEP = 1.5  # from one depth of the coarse sample to the next
 MOST_LOOKS = 16
 SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
 LOOKS = 9  # points of a leg
 WORTH_RAISING = 1e-4  # relative
-ROUGH, ENOUGH = 1e-6, 1e-7  # relative: less is no gain
+ROUGH, ENOUGH = 1e-6, 1e-7  # relative: a smaller gain does not count
 ENOUGH_LACK = 1e-6  # [rad/m]
 SHORTER = 0.4  # of the legs of a start
 SPARE = 1e-3 * LEAST_RATE  # kept to the threshold, for rounding
@@ -71,7 +71,7 @@ class Deepest:
 
 
 def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> Deepest:
-    """The greatest stroke that still has zero reversals (theory §4); the hole's own depth is not looked at.
+    """The greatest stroke that still has zero reversals (theory §4); the hole's own depth is not examined.
 
     Args:
         robot: the arm.
@@ -115,7 +115,7 @@ def deepened(drilling: Drilling, settings: Settings, motion: Candidate) -> Deepe
         return own
     steepest = settings.max_twist if settings.legs == "free" else np.inf
     deeper = _Search(drilling, settings, steepest=steepest).run_from(motion)
-    # less is no gain, so that from the end of a valley nothing goes on
+    # a smaller gain does not count, so that from the end of a valley the search does not continue
     return deeper if deeper.depth > own.depth * (1 + WORTH_RAISING) else own
 
 
@@ -169,7 +169,7 @@ class _Search:
             for start in self._starts(depth, found):
                 ends += self._deepened(start, max((end.legs.depth for end in ends), default=0.0))
             if any(end.legs.depth >= depth for end in ends):
-                break  # what a coarse look does not think so deep is left out
+                break  # what a coarse sample does not think so deep is left out
         return self._deepest(ends)
 
     def run_from(self, motion: Candidate) -> Deepest:
@@ -192,8 +192,8 @@ class _Search:
         return self.rules._replace(depth=depth, steepest=min(LONGEST_TWIST / depth, self.rules.steepest))
 
     def _looks(self) -> list[tuple[float, Array]]:
-        """Depths at which some pair may do, least first, and what coarse looks found there, shape (4, K, LOOKED)."""
-        depth = FIRST_LOOK * self.stretched
+        """Depths at which some pair may do, least first, and what coarse samples found there, shape (4, K, LOOKED)."""
+        depth = FIRST_DEPTH * self.stretched
         found = self._look(depth, self._every_other())
         while not self._alive(found).any() and depth > SHALLOWEST * self.stretched:
             depth /= STEP
@@ -271,7 +271,7 @@ class _Search:
         self, branch: int, sense: Array, rules: Constraints, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
         enough: float = ENOUGH, weighed: bool = False,
     ) -> tuple[Legs, float]:  # fmt: skip
-        return bettered(
+        return improved(
             self.arm, self.plane, branch, sense, rules, legs, goal,
             looks=looks, steps=steps, enough=enough, weighed=weighed,
         )  # fmt: skip

@@ -4,9 +4,10 @@ All six joints are to keep their direction first (`valleys`). Where they cannot 
 counted (`survey`), which bounds the fewest reversals from above; then every set of joints that costs no more to leave
 out is tried, cheapest first, as the grid may have missed a thin one.
 
-Where joints reverse a coarse look tells little of the travel: a leg may travel a third less between two of its slopes.
-So each set is tried on each branch by itself, and none is given up for what another branch has. The best of all is gone
-down from once more (`survey.settled`): what joints that may turn do is no set's own, and the survey is coarse.
+Where joints reverse, a coarse sample says little about the travel: a leg may travel a third less between two of its
+slopes. So each set is tried on each branch by itself, and none is given up because of another branch's result. The best
+candidate gets a final local descent (`survey.settled`): joints that may turn are not described by a set, and the survey
+is coarse.
 """
 
 from __future__ import annotations
@@ -66,7 +67,7 @@ def without_reversal(problem: Problem) -> Candidate | None:
 
 
 def can_run(drilling: Drilling, settings: Settings) -> bool:
-    """Whether any branch and spin can run the hole at all, whatever reverses; as far as a grid can tell."""
+    """Whether any branch and spin can run the hole at all, with any reversals; as far as a grid can show."""
     return bool(np.isfinite(survey(Problem(drilling, settings))).any())
 
 

@@ -19,7 +19,7 @@ from zerorev.model.job import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.search.line import climb, edge, golden
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Goal, bettered, legs_through, motion_of
+from zerorev.search.segments import Goal, improved, legs_through, motion_of
 from zerorev.search.straight import LEAST_RATE, constraints, target_spins
 from zerorev.search.viable import ROWS_SLACK, Grain
 
@@ -140,13 +140,13 @@ class _FreeLegs:
         return sorted((place for place in places if place.depth > 0), reverse=True)
 
     def motion(self, branch: int, psi_t: float, depth: float, goal: Goal, count: int) -> Candidate | None:
-        """A motion of few segments, begun in the middle of the tubes and bettered from there.
+        """A motion of few segments, begun in the middle of the tubes and improved from there.
 
         Args:
             branch: 0..7.
             psi_t: spin at the target to begin with [rad].
             depth: [m], to begin with or, but for the goal `depth`, to stay.
-            goal: what is bettered.
+            goal: what is improved.
             count: segments of each leg.
         """
         if self.value(branch, psi_t, depth) == np.inf:
@@ -165,7 +165,7 @@ class _FreeLegs:
         held, sense = self.held, self.sense.copy()
         for guard in GUARDS:
             rules = held._replace(min_rate=held.min_rate + guard + GUARD)
-            better, lack = bettered(self.arm, self.plane, branch, sense, rules, better, goal)
+            better, lack = improved(self.arm, self.plane, branch, sense, rules, better, goal)
             if lack > GUARD:
                 return None
             profile = motion_of(better, periodic=self.periodic)

@@ -25,7 +25,7 @@ def golden(
         low: one end.
         high: the other.
         steps: after the first two values.
-        enough: told the least value after each step, says whether to stop.
+        enough: called with the least value after each step; says whether to stop.
     """
     x, y = high - RATIO * (high - low), low + RATIO * (high - low)
     fx, fy = f(x), f(y)

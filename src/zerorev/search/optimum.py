@@ -151,7 +151,7 @@ class _Pool:
 
     @cached_property
     def deepest(self) -> Deepest:
-        """The deepest stroke, whatever the depth of the hole."""
+        """The deepest stroke, regardless of the depth of the hole."""
         found = deepest_of(self.drilling, self.settings)
         return self.led_in(found) if self.settings.keep_lead_in else found
 
@@ -304,7 +304,7 @@ class _Pool:
             return replace(self.deepest, depth=best.depth, profile=best.profile, branch=best.branch)
         deeper = deepened(self.drilling, self.settings, best)
         for _ in range(MOST_RAISES):
-            # another valley may go on where this one ends
+            # another valley may continue where this one ends
             there = self.drilling.deep(deeper.depth)
             beyond = without_reversal(Problem(there, self.settings))
             if beyond is None or not self.keeps(beyond):

@@ -1,6 +1,6 @@
-"""What the critical rates foretell before any search: the least twist and the deepest stroke of a hole (theory §2).
+"""What the critical rates predict before any search: the least twist and the deepest stroke of a hole (theory §2).
 
-Everything here is told from the target line alone: at each spin the two rate fields and their derivatives up to second
+Everything here follows from the target line alone: at each spin the two rate fields and their derivatives up to second
 order are known, no leg is followed. How good the figures are is measured in docs/explanation/prediction.md.
 """
 
@@ -48,14 +48,14 @@ Root = Callable[[Array, Array, Array], Array]
 
 @dataclass(frozen=True)
 class Prediction:
-    """What is foretold of a hole; straight legs.
+    """What is predicted of a hole; straight legs.
 
     Attributes:
         cheapest: the narrowest bracket of the target line, or None where the target is out of reach or the tool has
             no lever. No motion without a reversal out of that place turns the tool less than its width times the depth.
-        least_twist: foretold least |psi_start - psi_end| [rad] of a motion without a reversal to the hole's depth; inf
-            where none is foretold.
-        deepest: foretold deepest stroke [m]; 0 where none, however short, has zero reversals.
+        least_twist: predicted least |psi_start - psi_end| [rad] of a motion without a reversal to the hole's depth; inf
+            where none is predicted.
+        deepest: predicted deepest stroke [m]; 0 where none, however short, has zero reversals.
         deepest_at: its spin and branch, or None.
     """
 
@@ -71,7 +71,7 @@ def predict(drilling: Drilling, settings: Settings | None = None, *, root: Root 
     How good the figures are is measured in docs/explanation/prediction.md.
 
     Args:
-        drilling: robot, tool and hole: what to drill; its `branch`, if any, is the only one looked at.
+        drilling: robot, tool and hole: what to drill; its `branch`, if any, is the only one examined.
         settings: whose `min_rate` every joint keeps at every point, and whose `psi_bound` holds the spin.
         root: up to where an expansion of a joint's motion is trusted; by default `earlier_root` for the deepest stroke
             and `second_order_root` for the twist.
@@ -100,7 +100,7 @@ def narrowest(drilling: Drilling, settings: Settings) -> CriticalRates:
     """The narrowest bracket of the target line; its width is not finite where the target is out of reach.
 
     Args:
-        drilling: robot, tool and hole: where to drill; its `branch`, if any, is the only one looked at.
+        drilling: robot, tool and hole: where to drill; its `branch`, if any, is the only one examined.
         settings: whose `min_rate` every joint keeps at the target, and whose `psi_bound` holds the spin.
     """
     spins = target_spins(settings.psi_bound, FINE_SPINS)
@@ -168,7 +168,7 @@ class _TargetLine(NamedTuple):
     psi_bound: float
 
     def reach(self, slopes: Array, side: int, root: Root) -> Array:
-        """How far legs are foretold to run [m], shape (N, J), of slopes (N, J) above (1) or below (-1) the bracket."""
+        """How far legs are predicted to run [m], shape (N, J), of slopes (N, J) above (1) or below (-1) the bracket."""
         rate, bend, curl = (
             np.asarray(polyval(slopes[..., None], order[:, :, None, :], tensor=False), dtype=np.float64)
             for order in self.motion
@@ -189,11 +189,11 @@ class _TargetLine(NamedTuple):
         return np.asarray(edge + side * np.maximum(STEEPEST - side * edge, 0.0) * steps)
 
     def farthest(self, side: int, root: Root) -> Array:
-        """How far the best slope is foretold to run [m], shape (N,)."""
+        """How far the best slope is predicted to run [m], shape (N,)."""
         return np.asarray(self.reach(self.slopes(side), side, root).max(axis=1))
 
     def gentlest(self, side: int, depth: float, root: Root) -> Array:
-        """The slope nearest to the bracket that is foretold to run so deep [rad/m], shape (N,); NaN where none is."""
+        """The slope nearest to the bracket that is predicted to run so deep [rad/m], shape (N,); NaN where none is."""
         slopes = self.slopes(side)
         runs = self.reach(slopes, side, root) >= depth
         first = runs.argmax(axis=1)

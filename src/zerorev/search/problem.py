@@ -45,7 +45,7 @@ class Problem:
 
     @cached_property
     def psi(self) -> Array:
-        """The spins at the target that are looked at first [rad], shape (K,)."""
+        """The spins at the target that are examined first [rad], shape (K,)."""
         return target_spins(self.settings.psi_bound, GRID)
 
     @property

@@ -1,4 +1,4 @@
-"""Legs of a few straight segments, and how they are bettered (theory §4); the work is done in `kernels.slp`."""
+"""Legs of a few straight segments, and how they are improved (theory §4); the work is done in `kernels.slp`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
 
-__all__ = ["Goal", "Legs", "bettered", "breakpoints_of", "legs_through", "motion_of", "sense_at"]
+__all__ = ["Goal", "Legs", "breakpoints_of", "improved", "legs_through", "motion_of", "sense_at"]
 
 Goal = Literal["depth", "travel", "margin", "plunge_rotation"]
 GOALS: dict[Goal, int] = {
@@ -23,7 +23,7 @@ GOALS: dict[Goal, int] = {
 }  # fmt: skip
 
 STEPS = 120
-ENOUGH = 1e-6  # relative: less is no gain
+ENOUGH = 1e-6  # relative: a smaller gain does not count
 EVENLY = 0.3  # of the breakpoints: as many for each length of the leg
 BENT = 400  # points at which it is asked how much a leg bends, at least
 
@@ -78,7 +78,7 @@ def motion_of(legs: Legs, *, periodic: bool) -> Profile:
     return Profile(standoff, psi)
 
 
-def bettered(
+def improved(
     arm: ArmGeometry,
     plane: TwistPlane,
     branch: int,
@@ -92,7 +92,7 @@ def bettered(
     enough: float = ENOUGH,
     weighed: bool = False,
 ) -> tuple[Legs, float]:
-    """The best legs to be had from these by small steps, and what they lack.
+    """The best legs that small steps reach from these, and by how much they violate the constraints.
 
     Args:
         arm: of the robot.
@@ -103,7 +103,7 @@ def bettered(
         legs: to begin with; they need not keep the rules.
         goal: `depth`: as deep as can be; the others keep the depth: least `travel`, greatest `margin`, or the least
             `plunge_rotation` of the two.
-        looks: points of a segment at which the joints are looked at.
+        looks: points of a segment at which the joints are examined.
         steps: at most.
         enough: less gain than this, relative, is none.
         weighed: see `kernels.slp.better`.

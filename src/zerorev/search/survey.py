@@ -1,4 +1,4 @@
-"""All pairs of the legs of a grid, whatever reverses: what the fewest reversals are at most (theory §3)."""
+"""All pairs of the legs of a grid, with any reversals: an upper bound on the fewest reversals (theory §3)."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Candidate]:
     fewest = np.inf
     taken: list[int] = []
     for n in sorted(np.flatnonzero(np.isfinite(pairs[:, 0])).tolist(), key=lambda n: tuple(pairs[n, :3])):
-        # the coarse nodes may have jumped over a singularity: what cannot be run after all is no bound
+        # the coarse nodes may have jumped over a singularity: what cannot be run after all does not bound anything
         if len(found) == SEEDS or len(taken) == MOST_SEEDS or pairs[n, 0] > fewest + SAME_COST:
             break
         if any(abs(n - other) <= APART for other in taken):
@@ -86,14 +86,14 @@ def _best_of(problem: Problem, branch: int, pairs: Array) -> list[Candidate]:
 def _refined(problem: Problem, branch: int, seed: Array) -> Candidate | None:
     for nodes in (NODES, FINE_NODES, 4 * FINE_NODES):
         found, best = _searched(compass.refine, problem, branch, seed, problem.step / 2, nodes)
-        # what the nodes did not see: look again, more closely
+        # what the nodes did not see: search again, with more of them
         if found is not None and problem.order.reversals(found) <= best[0] + SAME_COST:
             break
     return found
 
 
 def settled(problem: Problem, motion: Candidate) -> Candidate:
-    """The bottom of the valley in which a motion lies, whatever reverses; the motion itself where that is no better.
+    """The bottom of the valley in which a motion lies, with any reversals; the motion itself where that is no better.
 
     Args:
         problem: what is asked.

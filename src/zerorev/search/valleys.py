@@ -1,9 +1,9 @@
-"""The best motion that keeps a set of joints: every valley of the target line gone down to its bottom (theory §2, §3).
+"""The best motion that keeps a set of joints: every valley of the target line descended to its bottom (theory §2, §3).
 
 For one spin at the target, one leg has to lie above the critical rates of all joints that are to keep their direction
 and the other below them, and the best leg on each side is found on its own, by a root search along one line of slopes
-(`kernels.legs`). What is left is one dimension, psi_t, on each branch: it is looked over on a grid, and every valley of
-the grid is gone down to its bottom.
+(`kernels.legs`). What is left is one dimension, psi_t, on each branch: it is sampled on a grid, and every valley of
+the grid is descended to its bottom.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ __all__ = ["Valleys"]
 NODES, FINE_NODES = 24, 96  # points on a leg: going down, the last polish
 DESCENT_STEPS = 10  # golden section from two steps of the grid to some 0.02 deg
 POLISH_STEPS, AGAIN_STEPS = 20, 12  # the same on fine legs, to some 4e-6 deg; and where more is asked of them
-# steps of the grid around a pair within which it is polished; the wider ones where nothing closer will do
+# steps of the grid around a pair within which it is polished; the wider ones where nothing closer is admissible
 CLOSE, CLOSEST = (0.02, 1.0), (0.0007, 0.02, 1.0)
 MOST_SHIFTS = 8  # windows of two steps that a valley is followed over
-CANDIDATES = 8  # valleys gone down, at most
-PATIENCE, LONG_PATIENCE = 4, 30  # valleys gone down in vain: for a set of joints, for all six
-WORTH_A_LOOK = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
-WORTH_A_GUESS = 1.5  # the same where the grid has no pair that will do, but one nearly so
-LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] that a leg is asked for beyond what was missing between its points, ...
+CANDIDATES = 8  # valleys descended, at most
+PATIENCE, LONG_PATIENCE = 4, 30  # valleys descended in vain: for a set of joints, for all six
+WORTH_A_DESCENT = 1.1  # a valley this much above the best bottom so far may still lie lower than it looks on the grid
+WORTH_A_GUESS = 1.5  # the same where the grid has no admissible pair, but one nearly so
+LEAST_MORE = 0.02 * LEAST_RATE  # [rad/m] by which a leg's threshold is raised beyond its shortfall between points, ...
 MORE_AND_MORE = 6.0  # ... times this from one time to the next: how far below zero a rate was is not known
 
 
@@ -110,12 +110,12 @@ class Valleys:
 
     @cached_property
     def _hopeless(self) -> Mask:
-        """Joints that cannot be kept even on their own, as far as the coarse look can tell, shape (6,)."""
+        """Joints that cannot be kept even on their own, as far as the coarse sample can tell, shape (6,)."""
         asked = self.problem.asked(0.0, turn_inside=True)
         return np.array([not (self._look(alone, asked, legs.TRAVEL)[1] > 0).any() for alone in np.eye(6, dtype=bool)])
 
     def _look(self, keep: Mask, asked: Constraints, mode: int) -> tuple[Array, Array, Array]:
-        """What a coarse look finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
+        """What a coarse sample finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
         out = np.empty((4, self.psi.size, pairs.LOOKED))
         lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
         pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, mode, -np.inf, out)
@@ -123,7 +123,7 @@ class Valleys:
         return value, margin, guess
 
     def _bottoms(self, keep: Mask, asked: Constraints, mode: int) -> Iterator[_Pair]:
-        """Go down every valley of the coarse look that may hold the best pair; each pair betters those before it."""
+        """Descend every valley of the coarse sample that may hold the best pair; each pair improves those before it."""
         value, margin, guess = self._look(keep, asked, mode)
         # between the grid's spins, too, the margin may just be enough
         peaks = [(np.inf, -margin[p, n], p, n) for p, n in self._peaks(margin)]
@@ -134,17 +134,17 @@ class Valleys:
             valleys += [peak for peak in peaks if value[peak[2:]] == np.inf]
         best: _Pair | None = None
         vain, patience = 0, LONG_PATIENCE if keep.all() else PATIENCE
-        gone_down: list[tuple[int, float, float]] = []  # posture, and the spins between which all was looked at
-        for looked_at, (rough, _, posture, n) in enumerate(sorted(valleys)):
+        descended: list[tuple[int, float, float]] = []  # posture, and the spins between which all was examined
+        for examined, (rough, _, posture, n) in enumerate(sorted(valleys)):
             spin = self.psi[n]
             if vain == patience or not self._may_reach(margin, posture, n, asked.min_rate):
                 continue
             if best is not None and mode != legs.GREATEST_MARGIN and keep.all():
-                if looked_at >= CANDIDATES and rough < np.inf:
+                if examined >= CANDIDATES and rough < np.inf:
                     continue
-                if best.value < min(rough / WORTH_A_LOOK, guess[posture, n] / WORTH_A_GUESS):
+                if best.value < min(rough / WORTH_A_DESCENT, guess[posture, n] / WORTH_A_GUESS):
                     continue
-            if any(posture == other and low <= spin <= high for other, low, high in gone_down):
+            if any(posture == other and low <= spin <= high for other, low, high in descended):
                 continue
             bound = np.inf if best is None else best.value
             pair = self._descend(keep, asked, mode, posture, n, bound)
@@ -155,7 +155,7 @@ class Valleys:
                 pair = min((one for one in pairs_there if one is not None), default=None)
             vain += pair is None
             if pair is not None:
-                gone_down.append(
+                descended.append(
                     (posture, min(spin, pair.psi_t) - self.step / 2, max(spin, pair.psi_t) + self.step / 2)
                 )
             if pair is not None and (best is None or pair.value < best.value - 1e-9):
@@ -197,7 +197,7 @@ class Valleys:
         steps: int,
         bound: float = np.inf,
     ) -> _Pair | None:
-        """The best pair around a spin; where it lies at the edge of what is looked at, the valley goes on beyond it."""
+        """The best pair around a spin; a valley that is lowest at the edge of the examined spins continues beyond."""
         for _ in range(MOST_SHIFTS):
             pair = self._bottom(keep, asked, mode, posture, spin - around, spin + around, nodes, steps, bound)
             if pair is None or abs(pair.psi_t - spin) < 0.98 * around:
@@ -206,7 +206,7 @@ class Valleys:
         return pair
 
     def _shoulders(self, keep: Mask, asked: Constraints, mode: int, value: Array, posture: int, n: int) -> list[int]:
-        """The nearest spins of the grid to either side of one, within its valley, at which some pair will do."""
+        """The nearest spins of the grid to either side of one, within its valley, that have an admissible pair."""
         found, row, work = [], np.empty(pairs.COLUMNS), np.empty(ROOM)
         for side in (-1, 1):
             for away in range(1, MOST_SHIFTS + 1):
@@ -234,7 +234,7 @@ class Valleys:
         steps: int,
         bound: float = np.inf,
     ) -> _Pair | None:
-        """The best pair between two spins, or None where none will do."""
+        """The best pair between two spins, or None where none is admissible."""
         if not self.periodic:
             low, high = max(low, self.psi[0]), min(high, self.psi[-1])
         row = np.empty(pairs.COLUMNS)
@@ -245,11 +245,11 @@ class Valleys:
         return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 
     def _polished(self, keep: Mask, asked: Constraints, mode: int, pair: _Pair) -> Candidate | None:
-        """The pair followed on finer legs, and asked for a little more where the located extremes fall short."""
+        """The pair followed on finer legs; the threshold is raised a little where the located extremes are below it."""
         goal = asked.min_rate
         # nobody asked for the floor: half of it is enough
         enough = goal * (1 - 1e-9) if goal > LEAST_RATE else 0.5 * goal
-        # few points foretell the travel of a leg to some 0.1 %, and so where a flat valley is lowest only roughly
+        # few points predict the travel of a leg to some 0.1 %, and so where a flat valley is lowest only roughly
         pair = self._nearby(keep, asked, mode, pair, POLISH_STEPS, CLOSE) or pair
         found, shy, more = None, LIMIT_SLACK, LEAST_MORE
         for _ in range(6):
@@ -262,7 +262,7 @@ class Valleys:
                 least = self._least_rate(found, keep, mean_rule=asked.mean_rule)
                 if least >= enough:
                     break
-                # the lowest point lies between the nodes: ask for what was missing, and look again
+                # the lowest point lies between the nodes: raise the threshold by the shortfall, search again
                 asked = asked._replace(min_rate=asked.min_rate + max(goal - least, 0.0) + more)
                 more *= MORE_AND_MORE
             pair = self._nearby(keep, asked, mode, pair, AGAIN_STEPS, CLOSEST) or pair
@@ -271,7 +271,7 @@ class Valleys:
     def _nearby(
         self, keep: Mask, asked: Constraints, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
     ) -> _Pair | None:
-        """The best pair around another, on fine legs, as close to it as some will do; `close` in steps of the grid."""
+        """The best pair around another, on fine legs, as close to it as possible; `close` in steps of the grid."""
         for around in np.array(close) * self.step:
             near = self._followed(keep, asked, mode, pair.branch // 2, pair.psi_t, around, FINE_NODES, steps)
             if near is not None:

@@ -186,13 +186,13 @@ def comparison(
         hole: the id of the only hole to look at; None for all.
 
     Raises:
-        InputError: an unknown method or hole, no seed or one that is no integer of 0 or more, too small a budget.
+        InputError: an unknown method or hole, no seed or one that is not an integer of 0 or more, too small a budget.
     """
     if not seeds:
         raise InputError("no seed", where="seeds", accepted="1 or more")
     for seed in seeds:
         if not isinstance(seed, (int, np.integer)) or isinstance(seed, bool) or seed < 0:
-            raise InputError(f"{seed!r} is no seed", where="seeds", accepted="integers of 0 or more")
+            raise InputError(f"{seed!r} is not a seed", where="seeds", accepted="integers of 0 or more")
     if budget < LEAST_BUDGET:
         raise InputError(f"{budget} evaluations", where="budget", accepted=f"{LEAST_BUDGET} or more")
     even_fractions(samples)  # says what is wrong with it, if anything

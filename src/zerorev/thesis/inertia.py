@@ -47,7 +47,7 @@ class Constant(_Scheme):
 
 @dataclass(frozen=True)
 class Random(_Scheme):
-    """Drawn anew at every iteration, for the whole swarm: low + rand() * (high - low)."""
+    """Drawn again at every iteration, for the whole swarm: low + rand() * (high - low)."""
 
     low: float = 0.5
     high: float = 1.0

@@ -37,7 +37,7 @@ class Problem:
         drilling: robot, tool and hole.
         bound: spins are within +- this [rad]; the thesis' unless given.
         weighing: of eq. 4.7; with its motion threshold the exact search keeps it, too.
-        samples: steps of a motion at which it is looked at.
+        samples: steps of a motion at which it is examined.
         crowded: whether the samples crowd at the ends of the legs; the thesis' are evenly spread.
     """
 
@@ -62,7 +62,7 @@ class Outcome:
         branch: 0..7.
         score: eq. 4.7, 1 or more where the motion cannot be run.
         reversals: counted on the samples; -1 where the motion cannot be run.
-        evaluations: motions that the method looked at; 0 for the exact search, which looks at legs.
+        evaluations: motions that the method examined; 0 for the exact search, which looks at legs.
         first_zero: how many until the first one without reversals; None where there was none.
     """
 

@@ -63,7 +63,7 @@ def parameter_map(
         psi_range: first and last spin of each axis [rad].
         psi_target: spins at the target [rad], shape (M,), instead of K in that range: a slice or a few.
         threads: how many to use; None: one a core. The map is the same.
-        progress: told how many spins at the target are done, and of how many.
+        progress: called with the number of spins at the target done and in all.
 
     Returns:
         a dataset over psi_target_deg (M), psi_start_deg (K) and psi_end_deg (K) with `score` (eq. 4.7, 1 or more where
@@ -177,7 +177,7 @@ def _evaluate(
 
 
 def _memory_available() -> float:
-    """Bytes that can be had without swapping, infinite where the system does not say."""
+    """Bytes that are available without swapping, infinite where the system does not say."""
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))

@@ -67,7 +67,7 @@ def _minimise(trial: Trial, algorithm: Any, seed: int) -> None:
 
 
 def cma_es(trial: Trial, seed: int, *, step: float = 0.25, growth: float = 2.0) -> None:
-    """Hansen's covariance matrix adaptation, begun anew with a larger population wherever it has converged (IPOP).
+    """Hansen's covariance matrix adaptation, begun again with a larger population wherever it has converged (IPOP).
 
     Args:
         trial: what is to be least.

@@ -2,8 +2,9 @@
 
     f = N_rev / 6 * W_rev + theta_trv / (6 * 360 deg) * W_trv + B_jump + B_limit + B_fault
 
-on each of the eight branches, of which the best counts. A pose out of reach costs 1, whatever else the path does. As in
-the thesis a motion whose turns are too many can cost as much as one that cannot be run: both are past all hope.
+on each of the eight branches, of which the best counts. A pose out of reach costs 1, regardless of the rest of the
+path. As in the thesis a motion whose turns are too many can cost as much as one that cannot be run: both are past all
+hope.
 
 Samples overlook a reversal between two of them, most of all in the first step next to the target, where least travel
 leads; `zerorev.motion.evaluation.evaluate` locates it.
@@ -30,8 +31,8 @@ __all__ = [
     "SAMPLES",
     "THESIS",
     "THESIS_MIN_RATE",
+    "ExaminedAgain",
     "Judged",
-    "LookedAtAgain",
     "MotionObjective",
     "SampledObjective",
     "Turns",
@@ -41,7 +42,7 @@ __all__ = [
 ]
 
 SAMPLES = 200  # steps on the whole path while searching (thesis sec. 4.2)
-FINAL_SAMPLES = 40_000  # when the best is looked at again
+FINAL_SAMPLES = 40_000  # when the best is examined again
 THESIS_MIN_RATE = float(np.deg2rad(10.0))
 """0.005 deg/step at 200 steps on 100 mm of path (thesis sec. 4.3) [rad/m]."""
 
@@ -82,7 +83,7 @@ class Weighing:
             branch like the other conditions, +1 (thesis sec. 4.3: 0.005 deg/step, `THESIS_MIN_RATE`; theory §5); 0
             switches it off.
         min_rate_rule: `pointwise` (each step) or `mean` (each leg).
-        turns: `after_extents` (whatever brings the whole path within the limits) or `first_point` (those of the first
+        turns: `after_extents` (those that bring the whole path within the limits) or `first_point` (those of the first
             point, which lies within +-180 deg, joint 6 within 0 to 360 deg; so the thesis has them, hence the missing
             block of its Fig. 26).
     """
@@ -109,8 +110,8 @@ THESIS = Weighing()
 
 
 @dataclass(frozen=True)
-class LookedAtAgain:
-    """The best motion of a search, looked at closely on its branch.
+class ExaminedAgain:
+    """The best motion of a search, examined closely on its branch.
 
     Attributes:
         score: eq. 4.7 on many samples.
@@ -172,7 +173,7 @@ class SampledObjective:
         """Prepare to judge motions.
 
         Args:
-            drilling: robot, tool and hole; its branch, where it has one, is the only one looked at.
+            drilling: robot, tool and hole; its branch, where it has one, is the only one examined.
             weighing: weights, motion threshold and choice of turns.
             samples: steps on the whole path, an even number.
             fractions: samples of a leg instead, from 0 at the target to 1 at its outer end, shape (L + 1,).
@@ -241,7 +242,7 @@ class SampledObjective:
         share_out(judge_some, len(spins), self.threads)
         return costs, reversals
 
-    def look_again(self, spins: Array, branch: int, samples: int = FINAL_SAMPLES) -> LookedAtAgain:
+    def examine(self, spins: Array, branch: int, samples: int = FINAL_SAMPLES) -> ExaminedAgain:
         """One motion on many more samples, as the thesis checks its best (sec. 4.2), and exactly.
 
         Args:
@@ -256,7 +257,7 @@ class SampledObjective:
         scores, reversals = finer.on_branches(np.asarray(spins)[None])
         profile = Profile.straight(self.drilling.hole.depth, *np.asarray(spins).tolist())
         exact = evaluated(self.drilling, profile, branch)
-        return LookedAtAgain(float(scores[0, branch]), int(reversals[0, branch]), exact)
+        return ExaminedAgain(float(scores[0, branch]), int(reversals[0, branch]), exact)
 
     def _best(self, spins: Array) -> Judged:
         costs, reversals = self.on_branches(spins)

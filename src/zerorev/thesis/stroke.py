@@ -43,7 +43,7 @@ def thesis_stroke(drilling: Drilling, settings: Settings, way: Way, seed: int) -
     """The deepest stroke of a hole as the thesis looks for it: a lower bound, as a swarm may miss what is there.
 
     Args:
-        drilling: target, direction and reference of the spin; its depth is not looked at.
+        drilling: target, direction and reference of the spin; its depth is not examined.
         settings: whose `min_rate` the objective asks for, and whose `psi_bound` holds the swarm, +-180 deg where none.
         way: halving 0 to 200 mm (eq. 4.9), or stepping down from 200 mm by 5 mm.
         seed: of every swarm.

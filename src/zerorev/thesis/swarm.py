@@ -2,8 +2,8 @@
 
 Where the thesis is silent: a particle that leaves the bounds is put back onto them, and its velocity is then what it
 really moved (eq. 4.2); first velocities are uniform, up to a tenth of the range either way; in eq. 4.6 each particle
-draws its own r and s anew at every iteration (they "represent a particle's adherence"), one number for all three spins,
-while W_in is drawn once for the whole swarm.
+draws new r and s of its own at every iteration (they "represent a particle's adherence"), one number for all three
+spins, while W_in is drawn once for the whole swarm.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The arm once more, from its drawing alone: forwards link by link, backwards by triangles and crossed axes.
 
-Nothing here follows the closed formulas of Brandstoetter et al. (2014) that the kernels use, so that a slip in one is
-no slip in the other. Only the meaning of the seven lengths is shared (`zerorev.model.robot.ArmGeometry`).
+Nothing here follows the closed formulas of Brandstoetter et al. (2014) that the kernels use, so that an error in one is
+not repeated in the other. Only the meaning of the seven lengths is shared (`zerorev.model.robot.ArmGeometry`).
 
 Samples come last here, (3, N) and (3, 3, N). Joints have the shape (N, 6) all the same, but lie in memory joint by
 joint. The loops over samples are in `verify.compiled`.

@@ -56,7 +56,7 @@ def verify_hole(
 ) -> Verification:
     """Prove or refute what a plan claims of one hole, from the model alone.
 
-    The joints of the whole motion are computed anew, from the hole, the profile and the joints at its first
+    The joints of the whole motion are computed again, from the hole, the profile and the joints at its first
     breakpoint, and every claim is held against them. A wrong plan is reported, never raised.
 
     Args:
@@ -68,7 +68,7 @@ def verify_hole(
         blend_samples: points on the blended corner; a blend within a leg has a quarter of them.
 
     Returns:
-        What was looked at, and one sentence for each claim that does not hold.
+        What was examined, and one sentence for each claim that does not hold.
     """
     flaws = tuple(complete(hole_plan))
     motion, score = hole_plan.motion, hole_plan.score
@@ -86,7 +86,7 @@ def verify_hole(
         *reversals_claimed(robot, score, track, turned),
         *score_claimed(robot, score, track, turned),
     ]
-    looked_at, on_blends = [("", track)], 0
+    examined, on_blends = [("", track)], 0
     for k, radius in _blends(motion.profile, settings):
         at_corner = k == motion.profile.corner
         where = "in the blended corner, " if at_corner else f"in the blend at breakpoint {k + 1}, "
@@ -95,11 +95,11 @@ def verify_hole(
         joints = follow(robot, tool, hole, curve, posture, track.joints[before])
         piece = joined(track, Track(curve, joints), before, behind)
         failures += blend_keeps(robot, where, turned, reversals_through(track, turned, piece, before, behind))
-        looked_at.append((where, piece))
+        examined.append((where, piece))
         on_blends += curve.psi.size
 
     figures = []
-    for where, piece in looked_at:
+    for where, piece in examined:
         position, rotation = residual(robot, tool, hole, piece.path, piece.joints)
         checks = (
             *reach(piece),

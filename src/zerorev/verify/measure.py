@@ -31,7 +31,7 @@ def reversals(track: Track) -> Reversals:
 
 
 def _steady_ways(track: Track) -> list[int]:
-    """The way of each joint that moves the same way at every step, 1 or -1; 0 for one that needs a closer look."""
+    """The way of each joint that moves the same way at every step, 1 or -1; 0: not decided at these steps."""
     nil, moves = max(NIL_STEP, track.nil_rate * float(track.path_steps.max())), track.moves
     return [int(least > nil) - int(most < -nil) for least, most in zip(moves.least, moves.most, strict=True)]
 

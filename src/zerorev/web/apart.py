@@ -121,7 +121,7 @@ def _received(pipe: IO[bytes]) -> Iterator[Any]:
 def serve() -> None:
     """Do the one task that comes in by the standard input, and send what comes of it by the standard output."""
     out = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever prints does not print into the results
+    os.dup2(2, 1)  # so that nothing prints into the results
     _limit()
     trouble: ZerorevError | None = None
     try:

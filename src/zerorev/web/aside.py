@@ -31,11 +31,11 @@ async def aside(call: Callable[[], T]) -> T:
 
     def run() -> None:
         try:
-            told: tuple[Callable[[Any], None], Any] = future.set_result, call()
+            outcome: tuple[Callable[[Any], None], Any] = future.set_result, call()
         except Exception as error:
-            told = future.set_exception, error
+            outcome = future.set_exception, error
         with suppress(RuntimeError):  # the loop is closed: the app has ended
-            loop.call_soon_threadsafe(tell, *told)
+            loop.call_soon_threadsafe(tell, *outcome)
 
     threading.Thread(target=run, name="zerorev-aside", daemon=True).start()
     return await future

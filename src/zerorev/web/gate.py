@@ -10,7 +10,7 @@ The app has none. What stands for the token once a page is opened is a key:
   address without a token is answered by a door: a page without any secret, whose script shows the key that it finds
   there and is given a ticket, an address at which the page is served one time.
 
-So whatever another port hears or sees, none of it opens the page or anything behind it.
+So nothing that another port hears or sees opens the page or anything behind it.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class Gate:
         return await self._ask(inner, headers, receive, send)
 
     def _stranger(self, scope: Scope, headers: _Headers) -> str | None:
-        """Why a request can come from no page of ours, whatever it shows; None: it may."""
+        """Why a request cannot come from a page of ours, regardless of its token; None: it may."""
         if headers.only("host") != self._host:
             return NOT_THIS_HOST
         origin = headers.only("origin")

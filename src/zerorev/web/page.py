@@ -1,4 +1,4 @@
-"""The page: which parts it has, how they are framed, and when it is drawn anew."""
+"""The page: which parts it has, how they are framed, and when it is drawn again."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ PICTURES: tuple[tuple[str, str, View], ...] = (
     ("curves", "Joint angles along the path", curves),
 )
 
-# what was sent so far is drawn; a page that is not looked at draws nothing, and is not waited for
+# what was sent so far is drawn; a page that is not shown draws nothing, and is not waited for
 ON_SCREEN = "new Promise(done => { requestAnimationFrame(() => setTimeout(done)); setTimeout(done, 300); })"
 LONGEST = 5.0  # [s] that a browser is waited for
 
@@ -85,11 +85,11 @@ def build(session: Session, work: Work) -> None:
         if before.hole is not after.hole:
             soon()
 
-    def plan_what_is_looked_at() -> None:
+    def plan_the_selected_hole() -> None:
         if session.state.hole is not None and session.state.answer is None:
             plan_selected(work)
 
-    soon = throttled(plan_what_is_looked_at, 0.0)  # once all views have been told of the hole
+    soon = throttled(plan_the_selected_hole, 0.0)  # once all views know the hole
     draw()
     soon()
 

@@ -46,7 +46,7 @@ class Pages:
         app.storage.tab["tab"] = tab
         kept = self._pages.get(tab)
         if kept is None:
-            # a tab that was doubled in the browser goes on by itself from where the other is
+            # a tab that was doubled in the browser continues on its own from where the other is
             beside = self._pages.get(before) if before else None
             session = Session(beside.session.state if beside else self._first)
             kept = self._pages[tab] = _Page(session, Work(session))

@@ -35,7 +35,7 @@ __all__ = ["serve"]
 
 LOOPBACK = "127.0.0.1"
 USUAL_PORT = 8780
-RECONNECT = 20.0  # [s] that a lost connection is waited for before its page is built anew, from the same state
+RECONNECT = 20.0  # [s] that a lost connection is waited for before its page is built again, from the same state
 FAREWELL = 0.2  # [s] for the last words to reach the browser
 LARGEST_MESSAGE = 2 * 2**20  # [bytes] of what a page says over its socket
 STATIC = Path(__file__).parent / "static"
@@ -48,7 +48,7 @@ def serve(state: State, *, port: int | None = None, browser: bool = True, say: C
         state: what each new page begins with.
         port: the one to use; None: the usual one, or a free one where that is taken.
         browser: whether to open the page in the user's browser.
-        say: told the address, once it answers.
+        say: called with the address, once it answers.
 
     Raises:
         InputError: the port cannot be used.
@@ -120,7 +120,7 @@ def _site(pages: Pages) -> FastAPI:
 
 
 def _know_components() -> None:
-    """Import whatever has scripts of its own: a page can only load those that were known when it was asked for."""
+    """Import every module that has scripts of its own: a page can only load those known when it was requested."""
     for module in iter_modules(views.__path__, f"{views.__name__}."):
         import_module(module.name)
     _ = ui.aggrid  # is imported where it is first named
@@ -176,7 +176,7 @@ class _Server(uvicorn.Server):
 
     def _take_leave(self) -> None:
         async def leave() -> None:
-            logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)  # sockets that are cut off are no news
+            logging.getLogger("uvicorn.error").setLevel(logging.CRITICAL)  # sockets that are cut off need no message
             with contextlib.suppress(Exception):
                 await core.sio.emit("run_javascript", {"code": "zerorevEnded()"})
                 await asyncio.sleep(FAREWELL)

@@ -12,7 +12,7 @@ from zerorev.web.state import State, answered
 
 __all__ = ["Listener", "Session", "View", "undone"]
 
-View = Callable[[State, State], None]  # is told what was shown before, and what is now
+View = Callable[[State, State], None]  # is called with the states shown before and now
 Listener = Callable[[Any], None]
 
 KEPT = 50  # steps that can be taken back
@@ -24,7 +24,7 @@ class Session:
     Attributes:
         state: what is shown.
         theme: whether the page is dark; None: as the user's system is.
-        page: makes what the views are told within: the page that shows them, if there is one.
+        page: makes the context in which the views are called: the page that shows them, if there is one.
     """
 
     def __init__(self, state: State) -> None:
@@ -39,21 +39,21 @@ class Session:
         self._step: object = None  # what the last step came of
 
     def watch(self, view: View) -> None:
-        """Have a view told of every change from now on."""
+        """Call a view on every change from now on."""
         self._views.append(view)
 
     def unwatch(self) -> None:
-        """Let all views go, as when a page is built anew over the same state."""
+        """Let all views go, as when a page is built again over the same state."""
         self._views.clear()
         self._listeners.clear()
 
     def hear(self, what: str, listener: Listener) -> None:
-        """Have a view told of what others tell: things of the moment, such as where the motion is played.
+        """Call a listener with what other views tell: things of the moment, such as where the motion is played.
 
         Args:
             what: `seek` (path distance from the corner [mm], negative on the plunge), `pick_cell` (number of a cell of
                 the map).
-            listener: is given what is told.
+            listener: is given what they tell.
         """
         self._listeners.append((what, listener))
 
@@ -122,7 +122,7 @@ class Session:
             return
         with self.page():
             for view in tuple(self._views):
-                if view in self._views:  # one that is told first may build the page anew
+                if view in self._views:  # one that is called first may build the page again
                     view(before, state)
 
 

@@ -79,8 +79,8 @@ class State:
     Attributes:
         job: robot, tool, holes and settings, or None before anything is opened.
         answers: of the holes that have one, by their id; each is of the hole as it is in the job.
-        selected: id of the hole that is looked at, or None.
-        steered: the motion of the selected hole as the user has it in hand, or None: the planned one.
+        selected: id of the selected hole, or None.
+        steered: the motion of the selected hole as the user edits it, or None: the planned one.
         strokes: whether the answers are of the strokes `asked` for or of each hole's `deepest`.
         progress: of the long work under way, or None.
         trouble: why the last work came to nothing, in one sentence, or None.
@@ -145,7 +145,7 @@ def opened_map(cells: MapSlice) -> State:
 
 
 def selected(state: State, hole: str) -> State:
-    """Another hole is looked at; the motion in hand is let go.
+    """Another hole is selected; the edited motion is let go.
 
     Raises:
         InputError: no such hole.
@@ -156,12 +156,12 @@ def selected(state: State, hole: str) -> State:
 
 
 def steered(state: State, motion: Steered | None) -> State:
-    """The selected hole's motion is taken in hand, or let go."""
+    """The selected hole's motion is edited, or the edited one is let go."""
     return replace(state, steered=motion)
 
 
 def shown(state: State) -> Steered | None:
-    """The motion that the page shows of the selected hole: in hand, or as planned."""
+    """The motion that the page shows of the selected hole: the edited one, or as planned."""
     if state.steered is not None:
         return state.steered
     motion = state.answer.motion if state.answer else None
@@ -169,7 +169,7 @@ def shown(state: State) -> Steered | None:
 
 
 def answered(state: State, *answers: HolePlan, strokes: Strokes = "asked") -> State:
-    """Holes have been answered; a motion of them that was in hand is let go.
+    """Holes have been answered; an edited motion of them is let go.
 
     Answers of another kind of strokes are dropped; where the deepest strokes were asked for, the holes become as deep.
     Answers of holes that are gone, or have changed since, are not taken.
@@ -185,8 +185,8 @@ def answered(state: State, *answers: HolePlan, strokes: Strokes = "asked") -> St
     if strokes == "deepest" and fresh:
         deep = {key: each.hole for key, each in fresh.items() if each.hole.profile is None}  # not those kept by hand
         job = replace(job, holes=tuple(deep.get(hole.id, hole) for hole in job.holes))
-    in_hand = None if state.selected in fresh else state.steered
-    return replace(state, job=job, answers=MappingProxyType({**kept, **fresh}), strokes=strokes, steered=in_hand)
+    edited = None if state.selected in fresh else state.steered
+    return replace(state, job=job, answers=MappingProxyType({**kept, **fresh}), strokes=strokes, steered=edited)
 
 
 def with_hole(state: State, hole: Hole, instead_of: str | None = None) -> State:

@@ -1,6 +1,6 @@
 """Whole programs, byte for byte. A difference is read as a safety review: every changed line moves a robot.
 
-To write them anew after such a review: `ZEROREV_WRITE_GOLDEN=1 pytest tests/program/test_golden.py`.
+To write them again after such a review: `ZEROREV_WRITE_GOLDEN=1 pytest tests/program/test_golden.py`.
 """
 
 import os

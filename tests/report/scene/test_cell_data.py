@@ -123,7 +123,7 @@ def test_all_of_it_is_plain_json(robot, tool, published):
     assert holes_data(holes, np.eye(4), {})["reversals"] == [-1] * 4
 
 
-def test_the_arm_is_had_without_the_library_that_draws_figures():
+def test_the_arm_is_available_without_the_library_that_draws_figures():
     code = (
         "import sys; from zerorev.report.scene.cell_data import arm_data; from zerorev.web.opening import demo;"
         "job = demo().job; arm_data(job.robot, job.tool); sys.exit('matplotlib' in sys.modules)"

@@ -103,7 +103,7 @@ def test_a_jump_says_which_joint(robot, tool):
         assert all(fault.end - fault.start < 2e-4 for fault in each.faults)
 
 
-def test_too_slow_a_joint_is_told_by_its_name(robot, tool):
+def test_too_slow_a_joint_is_reported_by_its_name(robot, tool):
     slow = look(Drilling(robot, tool, HOLE), POSITIONS[0].profile, BRANCH, Settings())
     assert slow.runs
     assert not slow.meets_threshold

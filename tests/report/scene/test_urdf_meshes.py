@@ -144,7 +144,7 @@ def test_other_formats_and_broken_meshes_are_refused(robot, tmp_path):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("", "no XML"),
+        ("", "not XML"),
         ("<sdf/>", "begins with <sdf>"),
         ("<robot/>", "0 links"),
         ('<robot><link name="a"/></robot>', "0 moving joints"),
@@ -153,7 +153,7 @@ def test_other_formats_and_broken_meshes_are_refused(robot, tmp_path):
          '<origin xyz="1 x 2"/></joint></robot>', "is not 3 numbers"),
     ],
 )  # fmt: skip
-def test_what_is_no_description(robot, tmp_path, content, message):
+def test_what_is_not_a_description(robot, tmp_path, content, message):
     path = tmp_path / "r.urdf"
     path.write_text(content)
     with pytest.raises(InputError, match=message):

@@ -33,7 +33,7 @@ def test_few_holes_have_a_row_each(published):
     assert " 60.0 " in shown
 
 
-def test_many_holes_are_told_in_figures(published):
+def test_many_holes_are_summarised(published):
     *most, last = copies(published, ROWS + 1)
     last = replace(last, motion=None, score=None, status="infeasible")
     shown = text(Shown(published, [*most, last]))
@@ -58,7 +58,7 @@ def test_no_more_is_kept_than_shown(published):
         (Settings(min_rate=0.0, legs="free"), "free legs, twist at most 5 deg/mm; no motion threshold; spin periodic"),
     ],
 )
-def test_a_depth_is_told_with_its_settings(settings, says):
+def test_a_depth_is_shown_with_its_settings(settings, says):
     assert how_deep(settings) == says
 
 

@@ -47,7 +47,7 @@ def test_a_hole_without_motion_or_without_answer(published):
     assert (unplanned.verdict, unplanned.after, unplanned.travel, unplanned.margin) == ("not planned", None, None, None)
 
 
-def test_a_motion_in_hand_takes_the_place_of_the_planned_one(published):
+def test_an_edited_motion_takes_the_place_of_the_planned_one(published):
     plan, answer = published, replace(published.holes[0], verified=CHECKED, deepest=0.09)
     hole, held = answer.hole, Profile.straight(answer.hole.depth, 0.2, 0.2, 0.2)
     seen = look(Drilling(plan.robot, plan.tool, hole), held, answer.motion.branch, plan.settings)

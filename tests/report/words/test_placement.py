@@ -130,7 +130,7 @@ class TestPlacement:
             assert "[mm]" in drawn.get_ylabel() or "[deg]" in drawn.get_ylabel()
         assert png(figure).startswith(b"\x89PNG")
 
-    def test_the_outline_is_where_the_margin_is_nought(self, job):
+    def test_the_outline_is_where_the_margin_is_zero(self, job):
         _, found = answer(("y", "z"))
         y, z = found.slices[0].values
         plane = 0.2 * (y[:, None] - 0.012) + 0.0 * z

@@ -67,7 +67,7 @@ class TestFindings:
         assert len(lines) == 4
         assert "and likewise holes h3, h4, h5, h6, h7, h8 and 91 more" in lines[-1].plain
 
-    def test_brackets_are_no_markup(self):
+    def test_brackets_are_not_markup(self):
         (line,) = tables.finding_lines([Finding("error", "k", "[red]m[/red]", "[h]")])
         assert "hole [h]: [red]m[/red]" in shown(line)
 

@@ -1,4 +1,4 @@
-"""Sections are kept, taken up again, and made anew when they are stale; the page is the same bytes every time."""
+"""Sections are kept, taken up again, and made again when they are stale; the page is the same bytes every time."""
 
 import re
 from dataclasses import replace
@@ -45,7 +45,7 @@ def counted(monkeypatch):
     return found
 
 
-def test_goes_on_after_an_interruption_and_ends_with_the_same_page(counted, tmp_path):
+def test_resumes_after_an_interruption_and_ends_with_the_same_page(counted, tmp_path):
     whole = reproduce("chapter4", tmp_path / "whole", CONTEXT).read_bytes()
     counted.made, counted.fault = [], "last"
     with pytest.raises(KeyboardInterrupt):
@@ -60,7 +60,7 @@ def test_goes_on_after_an_interruption_and_ends_with_the_same_page(counted, tmp_
 
 
 @pytest.mark.parametrize("other", [{"seeds": 3}, {"map_size": 7}])
-def test_what_was_made_with_other_settings_is_made_anew(counted, tmp_path, other):
+def test_what_was_made_with_other_settings_is_made_again(counted, tmp_path, other):
     reproduce("chapter4", tmp_path / "out", CONTEXT)
     reproduce("chapter4", tmp_path / "out", replace(CONTEXT, **other))
     assert counted.made == ["kinematics", "twist", "last"] * 2
@@ -77,7 +77,7 @@ def test_what_was_made_with_other_settings_is_made_anew(counted, tmp_path, other
         lambda out: (out / "tables" / "chain.csv").unlink(),
     ],
 )
-def test_a_damaged_section_is_made_anew(counted, tmp_path, harm):
+def test_a_damaged_section_is_made_again(counted, tmp_path, harm):
     page = reproduce("chapter4", tmp_path / "out", CONTEXT).read_bytes()
     harm(tmp_path / "out")
     counted.made = []
@@ -148,7 +148,7 @@ def test_the_command(counted, tmp_path, capsys):
     assert str(tmp_path / "out" / PAGE) in capsys.readouterr().out
     counted.fault = "last"
     assert main(["reproduce", "chapter4", "-o", str(tmp_path / "two"), "--seeds", "2"]) == cli.INTERRUPTED
-    assert "goes on from there" in capsys.readouterr().err
+    assert "resumes" in capsys.readouterr().err
     assert main(["reproduce", "chapter5", "-o", str(tmp_path / "three")]) == cli.BAD_INPUT
     assert main(["reproduce", "all", "-o", str(tmp_path / "no" / "such")]) == cli.BAD_INPUT
     assert main(["reproduce", "all", "-o", str(tmp_path / "four"), "--seeds", "few"]) == cli.BAD_INPUT

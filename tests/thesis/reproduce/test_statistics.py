@@ -43,7 +43,7 @@ def test_fisher_after_holm():
         assert found[pair] == pytest.approx(last, rel=1e-9)
 
 
-def test_groups_that_differ_are_told_from_groups_that_do_not():
+def test_groups_that_differ_are_distinguished_from_groups_that_do_not():
     rng = np.random.default_rng(1)
     found = pairwise(
         [rng.normal(0, 1, 50), rng.normal(0, 1, 50), rng.normal(2, 1, 50), np.full(50, 7.0), np.full(50, 7.0)]

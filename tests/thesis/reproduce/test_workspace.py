@@ -47,7 +47,7 @@ def test_spin_has_no_lever_on_axis_1_where_the_wrist_is_beside_it(robot, tool):
     assert workspace._lever_of_axis_1(CONTEXT, 101.0) > 1e-4
     target = np.array([(100.0, 300.0, 800.0), (100.0, 400.0, 600.0)])
     assert np.isnan(workspace._deepest(CONTEXT, target).value).all()
-    # by hand: the wrist centre lies 100 mm behind the tip, whatever the spin
+    # by hand: the wrist centre lies 100 mm behind the tip, at any spin
     wrist = tool.T_flange_tcp[:3, :3].T @ (np.array([0, 0, -robot.arm.c4]) - tool.T_flange_tcp[:3, 3])
     assert wrist[2] * 1e3 == pytest.approx(100.0)
 

@@ -287,7 +287,7 @@ def test_a_hole_that_is_not_certified_has_no_tolerance(planned, published):
 
 
 @pytest.mark.parametrize("within", [Within(-1e-3, 0.0), Within(0.0, np.nan), Within(np.inf, 0.0)])
-def test_what_is_no_tolerance_is_refused(planned, within):
+def test_what_is_not_a_tolerance_is_refused(planned, within):
     with pytest.raises(InputError, match="tolerance"):
         certify_plan_within(planned, within)
     for ratio in (0.0, -1.0, np.nan, np.inf):

@@ -195,7 +195,7 @@ class TestATrueProof:
 class TestALie:
     """Trees of one node, so that the box that lies is sure to be checked; that they hold few legs is said besides."""
 
-    def told(self, kuka, drill, tree):
+    def reported(self, kuka, drill, tree):
         check = check_tree(kuka, drill, position(1), tree)
         assert check.verdict == "refuted"
         return " ".join(check.failures)
@@ -204,29 +204,29 @@ class TestALie:
         """The honest small tree: nothing is wrong with its boxes."""
         best, _ = second
         *node, slopes = around(best, best.score.travel * 0.99)
-        told = self.told(kuka, drill, by_hand(*node, slopes, [False, False]))
-        assert "less than the value" not in told
-        assert "could not be decided" not in told
-        assert "no node holds all spins" in told
+        reported = self.reported(kuka, drill, by_hand(*node, slopes, [False, False]))
+        assert "less than the value" not in reported
+        assert "could not be decided" not in reported
+        assert "no node holds all spins" in reported
 
     def test_a_value_above_the_best(self, kuka, drill, second):
         best, _ = second
         *node, slopes = around(best, best.score.travel * 1.01)
-        assert "have less than the value" in self.told(kuka, drill, by_hand(*node, slopes, [False, False]))
+        assert "have less than the value" in self.reported(kuka, drill, by_hand(*node, slopes, [False, False]))
 
     @pytest.mark.parametrize("leg", [0, 1])
     def test_a_dead_box_that_holds_the_best(self, kuka, drill, second, leg):
         best, _ = second
         *node, slopes = around(best, best.score.travel * 0.99)
         dead = [k == leg for k in range(2)]
-        assert "is said to be impossible, and was not found to be" in self.told(
+        assert "is said to be impossible, and was not found to be" in self.reported(
             kuka, drill, by_hand(*node, slopes, dead)
         )
 
     def test_that_there_is_no_motion(self, kuka, drill, second):
         best, _ = second
         *node, slopes = around(best, NO_VALUE)
-        assert "have less than the value" in self.told(kuka, drill, by_hand(*node, slopes, [False, False]))
+        assert "have less than the value" in self.reported(kuka, drill, by_hand(*node, slopes, [False, False]))
 
 
 class TestAnUnsoundSearch:

@@ -24,7 +24,7 @@ __all__ = [
 
 LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
 LINE = 100
-POLE = 1e-9  # below this length across Z an axis points straight up or down, as far as its angle A can be told
+POLE = 1e-9  # below this length across Z an axis points straight up or down, for the angle A, which is then undefined
 
 # words of the language, and modules that every controller has: a program so called would not load, or replace them
 _WORDS = """

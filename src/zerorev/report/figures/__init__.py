@@ -31,7 +31,7 @@ def write_figures(plan: Plan, folder: Path, progress: Callable[[int, int], None]
     Args:
         plan: what to draw.
         folder: where to; made if its parent exists.
-        progress: told how many holes are drawn, and of how many.
+        progress: called with the number of holes drawn and in all.
 
     Returns:
         the files, hole by hole.

@@ -1,7 +1,7 @@
 """The arm as solid shapes, made from its own geometry, and where its links are at given joints.
 
-The shapes are no maker's: they are as thick as an arm of this reach usually is, but each joint's housing lies on the
-very axis that the planner computes with, so that what is seen to turn is what turns.
+The shapes are not those of a maker: they are as thick as an arm of this reach usually is, but each joint's housing lies
+on the very axis that the planner computes with, so that what is seen to turn is what turns.
 
 Link frames: frame i lies on the axis of joint i and turns with it; with the arm straight up (model angles 0) all are
 parallel to the base frame. Frame 6 is the flange.

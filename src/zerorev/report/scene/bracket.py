@@ -94,7 +94,7 @@ def bracket(drilling: Drilling, profile: Profile, branch: int, step: float) -> B
         drilling: robot, tool and hole.
         profile: the spin along the path.
         branch: 0..7.
-        step: between the spins that are looked at [rad].
+        step: between the spins that are examined [rad].
     """
     n = profile.corner
     chosen, corner = float(profile.psi[n]), float(profile.standoff[n])

@@ -185,7 +185,7 @@ def _stretches(distance: Array, bad: np.ndarray) -> Iterator[tuple[float, float]
 
 def _why(robot: Robot, profile: Profile, path: JointPath, found: Evaluation, branch: int) -> str:
     if path.fault is None and path.jump is None:
-        return "; ".join(f"{each.message}, whatever its turn" for each in found.findings)
+        return "; ".join(f"{each.message}, with every turn" for each in found.findings)
     if path.fault is not None:
         n = int(np.flatnonzero(np.isnan(path.joints[:, 0]))[0])
         return f"branch {branch} is out of reach {_place(profile, path, n)}"

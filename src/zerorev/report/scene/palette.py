@@ -23,7 +23,7 @@ JOINT_INKS = ("#005a8f", "#8a5f00", "#00694c", "#a84a00", "#99487a", "#1c6d9e")
 # 0, 1, ... 5, and 6 or more reversals: none is blue, some are the darker the more; and a motion that cannot be run
 REVERSAL_COLOURS = ("#0072B2", "#ffe8a3", "#fec44f", "#fb9a3c", "#e5691b", "#b53d0b", "#671f0a")
 CANNOT_RUN = "#b8b8b8"
-# told apart without colour, too
+# can be distinguished without colour, too
 DASHES: tuple[Any, ...] = (
     "-",
     (0, (6, 1.5)),

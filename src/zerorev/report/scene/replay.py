@@ -59,7 +59,7 @@ def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[S
         "data": _script(data),
     }
     template = (STATIC / "replay.html").read_text()
-    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)  # once: what is put in is not looked at
+    return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)  # once: what is put in is not examined
 
 
 def _chosen(plan: Plan, ids: Sequence[str] | None) -> list[HolePlan]:
@@ -139,7 +139,7 @@ def _base64(path: Path) -> str:
 
 
 def _script(data: Any) -> str:
-    """JSON that cannot end the script element it stands in, whatever the ids of holes hold."""
+    """JSON that cannot end the script element it stands in, regardless of the ids of holes."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

@@ -1,4 +1,4 @@
-"""The twist map of a hole: which spins can be had along the drill axis, and where spin does not move a joint.
+"""The twist map of a hole: which spins are possible along the drill axis, and where spin does not move a joint.
 
 The map covers one whole turn of spin, of which every other turn is a copy, and the stroke once, of which the retract is
 the mirror image. It is of one branch, or the envelope of all: at each point the branch that serves best there.

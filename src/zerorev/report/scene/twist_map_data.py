@@ -114,7 +114,7 @@ def map_data(robot: Robot, found: TwistMap) -> dict[str, Any]:
 
 
 def _legend(robot: Robot, found: TwistMap) -> list[dict[str, Any]]:
-    """Which zones there are, and of whom."""
+    """Which zones there are, and of which joint."""
     out = []
     for zone, text, bits, names in (
         (NEAR_SINGULAR, "near-singular", found.singular, ("shoulder", "elbow", "wrist")),

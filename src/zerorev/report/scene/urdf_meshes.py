@@ -195,7 +195,7 @@ def _primitive(visual: Visual) -> Any:
 
 
 def _loaded(path: Path) -> Any:
-    """The triangles of a mesh file; what it says of materials, and other files that it names, is not looked at."""
+    """The triangles of a mesh file; what it says of materials, and other files that it names, is not examined."""
     import trimesh
 
     kind = path.suffix.lower().lstrip(".")
@@ -208,7 +208,7 @@ def _loaded(path: Path) -> Any:
         found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
     except InputError:
         raise
-    except Exception as error:  # whatever its readers stumble over
+    except Exception as error:  # any error of its readers
         raise InputError(f"cannot be read: {error}", where=str(path), accepted="a sound mesh") from None
     if not isinstance(found, trimesh.Trimesh) or not len(found.faces) or not np.isfinite(found.vertices).all():
         raise InputError("holds no triangles", where=str(path), accepted="a sound mesh")

@@ -62,7 +62,7 @@ def headline(
         answer: what was found for it, or None.
         names: of the joints.
         settings: of the job.
-        look: at the motion in hand where one is shown instead of the answer's, else None.
+        look: at the edited motion where one is shown instead of the answer's, else None.
         branch: of the motion that is shown, or None.
     """
     score = look.score if look else answer.score if answer else None

@@ -28,7 +28,7 @@ def summary_lines(path: str | Path) -> list[str]:
     """How many cells have an answer, and why the others have none.
 
     Args:
-        path: of the map; it is read piece by piece, whatever its size.
+        path: of the map; it is read piece by piece, regardless of its size.
     """
     found = read_workspace_map(path, load=False)
     counts = np.zeros(len(STATUS), dtype=np.int64)
@@ -38,7 +38,7 @@ def summary_lines(path: str | Path) -> list[str]:
     total = int(np.prod([found.sizes[name] for name in found["status"].dims]))
     shown = [f"{count:,} {WORDS[name]}" for name, count in zip(STATUS, counts.tolist(), strict=True) if count]
     unfinished = total - int(counts.sum())
-    return [f"{total:,} cells: " + ", ".join(shown + ([f"{unfinished:,} not yet looked at"] if unfinished else []))]
+    return [f"{total:,} cells: " + ", ".join(shown + ([f"{unfinished:,} not yet examined"] if unfinished else []))]
 
 
 def _slabs(found: Dataset) -> list[Dataset]:

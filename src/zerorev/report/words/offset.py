@@ -81,12 +81,12 @@ def offset_lines(job: Job, curve: OffsetCurve, least: LeastOffset | None) -> lis
     if least is None:
         i, j = np.unravel_index(np.argmax(curve.margin), curve.margin.shape)
         place = _place(float(curve.offsets[i]), float(curve.angles[j]))
-        text = f"no offset looked at drills every hole; the nearest, {place}, is"
+        text = f"no offset examined drills every hole; the nearest, {place}, is"
         return [*lines, Text(f"{text} {-mm(curve.margin[i, j]):.3g} mm too shallow", style="yellow")]
     tip = ", ".join(f"{value + 0.0:.6g}" for value in np.round(mm(least.tool.T_flange_tcp[:3, 3]), 3))
     text = f"least offset that drills every hole without a reversal: {_place(least.offset, least.angle)}"
     lines.append(Text(f"{text}; tcp_mm: [{tip}], rpy_deg as it is", style="green"))
-    return [*lines, Text("it is the least that was looked at")] if least.fails_at is None else lines
+    return [*lines, Text("it is the least that was examined")] if least.fails_at is None else lines
 
 
 def _place(offset: float, angle: float) -> str:

@@ -125,7 +125,7 @@ def placement_lines(job: Job, freedom: Freedom, found: Placement) -> list[Text]:
     margin, words = float(mm(found.least)), place_words(found.place)
     worst = job.holes[found.worst].id
     if found.least < 0:
-        short = f"no place that was looked at drills every hole; at the nearest, {words}, hole {worst} is"
+        short = f"no place that was examined drills every hole; at the nearest, {words}, hole {worst} is"
         return [*lines, Text(f"{short} {-margin:.1f} mm too shallow ({_drillable(found.margins)})", style="yellow")]
     lines.append(Text(f"best place: {words}; least margin {margin:+.1f} mm, hole {worst}", style="green"))
     frame = frame_text(frame_at(job.T_base_part, found.place))

@@ -1,4 +1,4 @@
-"""What the command `rates` shows: critical rates and what they foretell, as plain data and as a table."""
+"""What the command `rates` shows: critical rates and what they predict, as plain data and as a table."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from zerorev.model.job import Job
 from zerorev.motion.critical import CriticalRates
 from zerorev.search.prediction import Prediction
 
-__all__ = ["foretold_data", "foretold_table", "rates_data", "rates_table"]
+__all__ = ["predicted_data", "predicted_table", "rates_data", "rates_table"]
 
 
 def rates_data(rates: CriticalRates) -> dict[str, Any]:
@@ -30,24 +30,24 @@ def rates_data(rates: CriticalRates) -> dict[str, Any]:
     return dict(plain(data))
 
 
-def foretold_data(hole: Hole, foretold: Prediction) -> dict[str, Any]:
-    """A hole's prediction as plain data; null where there is nothing to foretell."""
-    least = None if foretold.cheapest is None else deg(foretold.cheapest.width * hole.depth)
+def predicted_data(hole: Hole, predicted: Prediction) -> dict[str, Any]:
+    """A hole's prediction as plain data; null where there is nothing to predict."""
+    least = None if predicted.cheapest is None else deg(predicted.cheapest.width * hole.depth)
     data = {
         "id": hole.id,
-        "cheapest": None if foretold.cheapest is None else rates_data(foretold.cheapest),
+        "cheapest": None if predicted.cheapest is None else rates_data(predicted.cheapest),
         "twist_bound_deg": least,
-        "least_twist_deg": deg(foretold.least_twist),
-        "deepest_mm": mm(foretold.deepest),
-        "deepest_at": None if foretold.deepest_at is None else rates_data(foretold.deepest_at),
+        "least_twist_deg": deg(predicted.least_twist),
+        "deepest_mm": mm(predicted.deepest),
+        "deepest_at": None if predicted.deepest_at is None else rates_data(predicted.deepest_at),
     }
     return dict(plain(data))
 
 
-def foretold_table(job: Job, foretold: Sequence[Prediction]) -> Table:
-    """One row a hole: where zero reversals are cheapest, the critical rates there, and what is foretold."""
-    table = _table(job, "hole", "least twist\nforetold [deg]", "deepest\nforetold [mm]")
-    for hole, each in zip(job.holes, foretold, strict=True):
+def predicted_table(job: Job, predicted: Sequence[Prediction]) -> Table:
+    """One row a hole: where zero reversals are cheapest, the critical rates there, and what is predicted."""
+    table = _table(job, "hole", "least twist\npredicted [deg]", "deepest\npredicted [mm]")
+    for hole, each in zip(job.holes, predicted, strict=True):
         if each.cheapest is None:
             table.add_row(Text(hole.id), Text("out of reach", style="red"))
             continue

@@ -151,15 +151,15 @@ class _Lines:
     def __init__(self, what: str, each: str) -> None:
         self.what, self.each = what, each
         self.began: tuple[float, int] | None = None
-        self.told = 0.0
+        self.shown = 0.0
 
     def __call__(self, done: int, of: int) -> None:
         now = time.monotonic()
         if self.began is None:
-            self.began, self.told = (now, done), now
-        if now - self.told < SECONDS_BETWEEN_LINES or done == of:
+            self.began, self.shown = (now, done), now
+        if now - self.shown < SECONDS_BETWEEN_LINES or done == of:
             return
-        self.told = now
+        self.shown = now
         rate = (done - self.began[1]) / (now - self.began[0])
         left = f", {duration((of - done) / rate)} left" if rate > 0 else ""
         note(f"{self.what}: {done} of {of} {self.each}s, {rate_text(rate, self.each)}{left}")

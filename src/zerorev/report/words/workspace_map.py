@@ -59,17 +59,17 @@ def difference_lines(apart: Difference, names: tuple[str, str]) -> list[str]:
         names: what they are called.
     """
     quantity, change = apart.quantity, apart.change
-    told = change[~np.isnan(change)]
-    gain = told if quantity.more_is_better else -told
-    lines = [f"{quantity.title}, {names[1]} beside {names[0]}: {change.size:,} common cells, {told.size:,} comparable"]
+    known = change[~np.isnan(change)]
+    gain = known if quantity.more_is_better else -known
+    lines = [f"{quantity.title}, {names[1]} beside {names[0]}: {change.size:,} common cells, {known.size:,} comparable"]
     only = [int((~np.isnan(a) & np.isnan(b)).sum()) for a, b in _both_ways(apart)]
     lines.append(f"an answer in {names[0]} alone: {only[0]:,} cells, in {names[1]} alone: {only[1]:,}")
-    if told.size:
+    if known.size:
         alike = 0.5 * 10.0**-quantity.digits
         better, worse = int((gain > alike).sum()), int((gain < -alike).sum())
         lines.append(
-            f"{names[1]} is better in {better:,} cells, worse in {worse:,}, alike in {told.size - better - worse:,};"
-            f" median change {quantity.shown(float(np.median(told)))}"
+            f"{names[1]} is better in {better:,} cells, worse in {worse:,}, alike in {known.size - better - worse:,};"
+            f" median change {quantity.shown(float(np.median(known)))}"
         )
         for word, n in (("greatest rise", np.nanargmax(change)), ("greatest fall", np.nanargmin(change))):
             row, column = divmod(int(n), change.shape[1])
@@ -116,10 +116,10 @@ def _why_none(found: Dataset) -> str:
     """What became of the cells without an answer, the most frequent first."""
     if "status" not in found:
         return ""
-    words = {-1: "not yet looked at", **{n: WORDS[name] for n, name in enumerate(STATUS) if name != "answered"}}
+    words = {-1: "not yet examined", **{n: WORDS[name] for n, name in enumerate(STATUS) if name != "answered"}}
     states, counts = np.unique(found["status"].values, return_counts=True)
-    told = sorted(zip(counts.tolist(), states.tolist(), strict=True), reverse=True)
-    return ", ".join(f"{count:,} {words[state]}" for count, state in told if state in words)
+    ordered = sorted(zip(counts.tolist(), states.tolist(), strict=True), reverse=True)
+    return ", ".join(f"{count:,} {words[state]}" for count, state in ordered if state in words)
 
 
 def _range(cells: Cells) -> str:

@@ -68,7 +68,7 @@ def prove(
         problem: one hole.
         best: the best motion known, of straight legs, or None.
         boxes: budget, in boxes of legs that are examined.
-        allows: whether a motion will do; what it demands of motions is not in the bounds, which hold all the same.
+        allows: whether a motion is admissible; its demands are not part of the bounds, which hold all the same.
         log: out, the tree of each search that was made, or None.
 
     Returns:
@@ -93,7 +93,7 @@ class _Least:
 
 
 class Prover:
-    """The proof of one hole; a search of it is gone on with where the budget is raised.
+    """The proof of one hole; a search of it is resumed where the budget is raised.
 
     Attributes:
         budget: in boxes of legs that are examined, in all.
@@ -150,8 +150,8 @@ class Prover:
         Args:
             best: to begin with, or None.
             most: what reversals may cost.
-            first: whether the first such motion will do.
-            search: one that is gone on with, or None.
+            first: whether the first such motion suffices.
+            search: one that is resumed, or None.
         """
         search = search or self.search_for_least(best, most)
 

@@ -28,7 +28,7 @@ class Tree(NamedTuple):
         heap: numbers of nodes, shape (N,).
         nodes: interval of spins, value, whether the terms are added to the travel (1) or refute (0), shape (N, 4).
         terms: conditions with multipliers, see `kernels.bound_multipliers`, shape (N, MOST_TERMS, TERM).
-        shares: where the first looks at a box are, as shares of the depth, shape (N, LOOKS).
+        shares: where a box is sampled first, as shares of the depth, shape (N, LOOKS).
         lists: posture, where its slopes start and how many they are, how many cuts, parent or -1, shape (N, 5).
         cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).

@@ -30,9 +30,9 @@ class Context:
     """The thesis' robot and drill, and how much work a section may do.
 
     Attributes:
-        seeds: runs of the swarm from which a rate is told; tables of many trials take three tenths as many.
+        seeds: runs of the swarm from which a rate is estimated; tables of many trials take three tenths as many.
         map_size: cells of the parameter map along each axis.
-        kept: what several sections tell of, so that it is computed once.
+        kept: what several sections report, so that it is computed once.
         tell: called with (done, total) on the way through a section.
         robot: the thesis' arm.
         tool: the thesis' drill.

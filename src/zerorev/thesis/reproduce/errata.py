@@ -101,8 +101,8 @@ def _chains() -> tuple[Result, ...]:
             "Table 2 describes the same arm",
             "no sign is mentioned",
             "Table 2",
-            f"relative rotations differ by up to {other:.0f}° from Table 1, whatever stands before and"
-            " behind the chain",
+            f"relative rotations differ by up to {other:.0f}° from Table 1, regardless of what stands"
+            " before and behind the chain",
             f"by {same:.0e}° with joint 3 counted the other way",
             "The same arm with joint 3 the other way round, up to constant transforms at base and flange.",
         ),
@@ -112,7 +112,7 @@ def _chains() -> tuple[Result, ...]:
 def relative_rotations(joints: Array, third: float) -> float:
     """Greatest difference [deg] between the angles by which both chains turn from one pose to the next.
 
-    The angle of a relative rotation is the same whatever constant transforms stand before and behind a chain.
+    The angle of a relative rotation is the same for any constant transforms that stand before and behind a chain.
 
     Args:
         joints: poses one after another [rad], shape (N, 6).
@@ -263,7 +263,7 @@ def _numbers() -> tuple[Result, ...]:
             "sec. 5.3, at Figure 36",
             f"500.08 mm is {500.08 - y:.2f} mm beside the hole",
             f"300.08 mm is {300.08 - y:.2f} mm beside it",
-            f"The hole of position 1 is at Y = {y:g} mm, and the errors told are tenths of a millimetre.",
+            f"The hole of position 1 is at Y = {y:g} mm, and the errors reported are tenths of a millimetre.",
         ),
         Result(
             "greatest deviation at position 3",

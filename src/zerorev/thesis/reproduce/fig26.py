@@ -107,23 +107,23 @@ def _symmetry(whole: dict[str, Dataset]) -> Result:
         "sec. 4.7, Figure 26, eq. 4.12",
         f"turns of the first point: {100 * fixed.differing:.2f} % of the cells differ from their mirror",
         f"turns for the whole path: {100 * chosen.differing:.2f} %, greatest difference {chosen.greatest:.0e}",
-        "The block is no property of the arm: it goes when the turns are chosen after the extents are known.",
+        "The block is not a property of the arm: it goes when the turns are chosen after the extents are known.",
     )
 
 
 def _example(context: Context) -> Result:
     there, back = np.array([MAP_EXAMPLE_RAD, MAP_EXAMPLE_RAD[::-1]])[:, None]
-    told = []
+    counted = []
     for name, turns in WAYS.items():
         objective = SampledObjective(Drilling(context.robot, context.tool, POSITIONS[0].hole), Weighing(turns=turns))
         counts = [int(objective.reversals(spins)[0]) for spins in (there, back)]
-        told.append(f"{name}: " + " and ".join("none can be run" if n < 0 else f"{n} reversals" for n in counts))
+        counted.append(f"{name}: " + " and ".join("none can be run" if n < 0 else f"{n} reversals" for n in counts))
     return Result(
         "ψ = [−1, 0, 1] and [1, 0, −1] rad",
         f"{MAP_EXAMPLE_REVERSALS} reversals on one branch; none can be run",
         "sec. 4.7",
-        told[1],
-        told[0],
+        counted[1],
+        counted[0],
         "The thesis' own example of a lost mirror image.",
     )
 
@@ -135,7 +135,7 @@ def _share(context: Context, found: Dataset) -> Result:
     travel = f"best cell {best.travel_deg:.1f}° of travel" if best.reversals == 0 else "no cell of this grid has zero"
     return Result(
         "share of the cube of spins with zero reversals",
-        "not told; 100³ cells, 8 configurations",
+        "not stated; 100³ cells, 8 configurations",
         "sec. 4.7",
         f"{100 * zero.share:.3f} % of {found['score'].size:,} cells; {travel}",
         f"{exact.reversals} reversals, {np.rad2deg(exact.score.travel):.1f}°",

@@ -16,7 +16,7 @@ from zerorev.thesis.reproduce.section import Column, Result, Section, Table
 
 __all__ = ["Chain", "appendix_b", "make", "modified_chain", "standard_chain", "tool_of", "worst_tip"]
 
-JOINTS_LOOKED_AT = 2000
+JOINTS_EXAMINED = 2000
 FRAME_6 = np.diag([-1.0, 1.0, -1.0, 1.0])  # of the thesis, in KUKA's flange frame
 
 Chain = Array
@@ -87,7 +87,7 @@ def worst_tip(T_base_tcp: Array, tips: Array) -> float:
 def make(context: Context) -> Section:
     """Both tables, the arm of zerorev and the nine joint targets of Appendix B against each other."""
     joints, tips = appendix_b()
-    many = np.random.default_rng(0).uniform(-np.pi, np.pi, (JOINTS_LOOKED_AT, 6))
+    many = np.random.default_rng(0).uniform(-np.pi, np.pi, (JOINTS_EXAMINED, 6))
     table_1 = modified_chain(many)
     ours = forward(context.robot, many) @ FRAME_6
     ours[..., :3, 3] *= 1e3
@@ -111,7 +111,7 @@ def make(context: Context) -> Section:
             "Table 1 and the arm of zerorev",
             "–",
             "Table 1",
-            f"the same to {arm:.1e} at {JOINTS_LOOKED_AT:,} poses",
+            f"the same to {arm:.1e} at {JOINTS_EXAMINED:,} poses",
             "",
             "zerorev knows the arm by other numbers (ortho-parallel, from KUKA's data); both are one robot.",
         ),

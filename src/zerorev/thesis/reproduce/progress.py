@@ -10,13 +10,13 @@ from zerorev.report.words import terminal
 from zerorev.thesis.reproduce.chapters import Part
 from zerorev.thesis.reproduce.runner import Teller
 
-__all__ = ["told"]
+__all__ = ["progress_lines"]
 
 SECONDS_BETWEEN_LINES = 20.0
 
 
 @contextlib.contextmanager
-def told() -> Iterator[Teller]:
+def progress_lines() -> Iterator[Teller]:
     """Show the sections as they are made; an interruption says what is kept."""
     console = terminal.err()
     if not console.is_terminal:
@@ -45,12 +45,12 @@ def told() -> Iterator[Teller]:
 @contextlib.contextmanager
 def _line(part: Part, number: int, of: int) -> Iterator[Callable[[int, int], None]]:
     terminal.note(f"section {number} of {of}: {part.title}")
-    told = time.monotonic()
+    shown = time.monotonic()
 
     def tell(done: int, total: int) -> None:
-        nonlocal told
-        if time.monotonic() - told >= SECONDS_BETWEEN_LINES and done < total:
-            told = time.monotonic()
+        nonlocal shown
+        if time.monotonic() - shown >= SECONDS_BETWEEN_LINES and done < total:
+            shown = time.monotonic()
             terminal.note(f"{part.title}: {done} of {total}")
 
     yield tell
@@ -61,6 +61,4 @@ def _kept() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(
-            "interrupted; finished sections are kept, and the same command goes on from there"
-        ) from None
+        raise KeyboardInterrupt("interrupted; finished sections are kept, and the same command resumes") from None

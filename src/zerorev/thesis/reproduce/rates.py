@@ -25,9 +25,9 @@ from zerorev.thesis.swarm import SwarmResult
 __all__ = ["make"]
 
 LUCK = (
-    "one plan published, and how many tries it took is not told",
-    '"Multiple trials with the same parameters were required" with constant inertia; not told for this position',
-    "one plan published, and how many tries it took is not told",
+    "one plan published, and how many tries it took is not stated",
+    '"Multiple trials with the same parameters were required" with constant inertia; not stated for this position',
+    "one plan published, and how many tries it took is not stated",
 )
 
 
@@ -88,11 +88,11 @@ def make(context: Context) -> Section:
         png(success_rates([position.name for position in POSITIONS], value, low_, high_, subtitle)),
     )
     text = (
-        "The thesis reports one run a position. How much of that was luck is told by many seeds: at position 1 none is"
+        "The thesis reports one run a position. Many seeds show how much of that was luck: at position 1 none is"
         " needed, at position 2 zero reversals fill only a hundred-thousandth of the cube of spins.",
         "The swarm counts on 200 samples and may call zero what has a reversal between two of them: least"
         " travel leads it"
-        " there. The best motion of each run is therefore looked at again by located events, and the share that is left"
+        " there. The best motion of each run is therefore examined again by located events, and the share that is left"
         " stands beside the success as the swarm itself sees it.",
     )
     return Section(text, tuple(results), (table,), (picture,))

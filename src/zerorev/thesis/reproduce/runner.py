@@ -21,7 +21,7 @@ PAGE = "index.html"
 
 
 class Teller(Protocol):
-    """Who is told how far it is."""
+    """What is called with the progress."""
 
     def __call__(self, part: Part, number: int, of: int) -> AbstractContextManager[Callable[[int, int], None] | None]:
         """Around the making of one part: what is yielded is called with (done, total) on the way."""
@@ -36,7 +36,7 @@ def reproduce(chapter: str, folder: Path, context: Context | None = None, teller
         chapter: one of `CHAPTERS`, or `all`.
         folder: where to; made if its parent exists.
         context: how many seeds, and the robot; None for the thesis' robot and the usual number.
-        teller: told of every part that has yet to be made.
+        teller: called for every part that has yet to be made.
 
     Returns:
         the page's file.

@@ -85,7 +85,7 @@ def make(context: Context) -> Section:
         ),
     )
     text = (
-        f"One target, {SAMPLES} steps on the path while searching, the best looked at again with"
+        f"One target, {SAMPLES} steps on the path while searching, the best examined again with"
         f" {FINAL_SAMPLES:,} steps and"
         " by zerorev's own located events. The thesis needed 280 s for one such run on a 3.5 GHz i5.",
         "Samples overlook a reversal between two of them; the column “located” counts them all, so a"
@@ -140,12 +140,12 @@ def _motions(context: Context, first: SwarmResult, runs: list[SwarmResult]) -> T
 
 def _senses(result: SwarmResult) -> str:
     assert result.history is not None
-    told = []
+    shares = []
     for iteration in SHOWN:
         steps = np.diff(result.history.positions[iteration], axis=1)
         share = float((steps[:, 0] * steps[:, 1] >= 0).mean())
-        told.append(f"{share:.0%} at iteration {iteration}")
-    return ", ".join(told)
+        shares.append(f"{share:.0%} at iteration {iteration}")
+    return ", ".join(shares)
 
 
 def _number(cell: Cell) -> str:

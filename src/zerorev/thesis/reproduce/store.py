@@ -73,7 +73,7 @@ class Store:
 
 
 def fingerprint(context: Context) -> dict[str, Any]:
-    """What a section depends on: when any of it differs, the section is made anew."""
+    """What a section depends on: when any of it differs, the section is made again."""
     return {
         "version": version("zerorev"),
         "sources": _digest_of_sources(),

@@ -35,7 +35,7 @@ def run(context: Context, settings: SwarmSettings, position: int = 0) -> SwarmRe
 
 
 def standard_runs(context: Context, position: int) -> list[SwarmResult]:
-    """The swarm of Table 4 at a position (0..2) with seeds 0, 1, ...; several sections tell of these same runs."""
+    """The swarm of Table 4 at a position (0..2) with seeds 0, 1, ...; several sections report these same runs."""
     key = ("standard runs", position)
     if key not in context.kept:
         settings = [replace(TABLE_4, seed=seed, keep_history=True) for seed in range(context.seeds)]

@@ -22,7 +22,7 @@ from zerorev.thesis.swarm import TABLE_3, SwarmResult, SwarmSettings
 
 __all__ = ["make"]
 
-SIGNIFICANT, LEAST_TOLD = 0.05, 1e-4
+SIGNIFICANT, LEAST_PRINTED = 0.05, 1e-4
 SEEDS_APART = 100_000  # between trials, so that no two of them share a random number
 CHOSEN = "3"
 EASY, HARD = 0, 1  # position 1, the thesis' own, and position 2, where a swarm often fails
@@ -78,8 +78,8 @@ def make(context: Context) -> Section:
     tables = (_table_3(tried), _table_4(), _differences(tried, ended, hard))
     text = (
         f"Each trial is run with {context.few} seeds at position 1, and half as many at position 2, where"
-        " zero is hard to find. Rates have 95 % intervals (Wilson), means too (bootstrap); which differences are real"
-        " is told by pairwise tests (Mann and Whitney on the share of particles at zero, Fisher on success), corrected"
+        " zero is hard to find. Rates have 95 % intervals (Wilson), means too (bootstrap); pairwise tests show which"
+        " differences are real (Mann and Whitney on the share of particles at zero, Fisher on success), corrected"
         " after Holm for all pairs. Trial 4 is run with 50 particles as in Table 3 and with 25 as in the text.",
     )
     return Section(text, _results(tried, ended, hard, _exact(context)), tables, tuple(pictures))
@@ -239,7 +239,7 @@ def _exact(context: Context) -> str:
 def _verdict(what: str, one: Array, base: Array, p: float) -> str:
     if p >= SIGNIFICANT:
         return f"no real difference in {what} (p = {p:.2g});"
-    less_than = f"p = {p:.1g}" if p >= LEAST_TOLD else f"p < {LEAST_TOLD:g}"
+    less_than = f"p = {p:.1g}" if p >= LEAST_PRINTED else f"p < {LEAST_PRINTED:g}"
     return f"{'more' if one.mean() > base.mean() else 'less'} {what} ({less_than});"
 
 

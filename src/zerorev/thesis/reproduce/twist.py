@@ -153,8 +153,8 @@ def _chain(context: Context) -> tuple[Table, Result]:
             between.append(float(np.abs(joints[0] - ends[chained]).max()) if chained in ends else None)
             ends[chained] = joints[-1]
             if chained:
-                told = (spins[0], spins[2], found.score.reversals, float(np.rad2deg(found.score.travel)))
-        rows.append((hole.id, y + PITCH_MM * n, *told, *between))
+                given = (spins[0], spins[2], found.score.reversals, float(np.rad2deg(found.score.travel)))
+        rows.append((hole.id, y + PITCH_MM * n, *given, *between))
     reversals = sum(int(row[4] or 0) for row in rows)
     with_chain, without = (max(float(row[k] or 0) for row in rows) for k in (-2, -1))
     caption = (
@@ -199,8 +199,8 @@ def _moved(context: Context) -> tuple[Table, tuple[Result, ...], Picture]:
         for name, spins in motions:
             _, found = best_of(context, position.hole, spins)
             score = found.score
-            told = (None, None) if score is None else (score.reversals, float(np.rad2deg(score.travel)))
-            rows.append((position.name, name, *spins, abs(spins[1] - spins[0]), abs(spins[2] - spins[1]), *told))
+            counted = (None, None) if score is None else (score.reversals, float(np.rad2deg(score.travel)))
+            rows.append((position.name, name, *spins, abs(spins[1] - spins[0]), abs(spins[2] - spins[1]), *counted))
         least[position.name] = rows[-1]
     published, twin, negated, exact = rows[:4]
     results = (

@@ -187,7 +187,7 @@ def angles(
 
 
 def posture_of(arm: ArmGeometry, joints: Array) -> Posture | None:
-    """The posture of controller angles [rad], shape (6,), by forward kinematics; None where it cannot be told."""
+    """The posture of controller angles [rad], shape (6,), by forward kinematics; None where it is undecided."""
     q = [arb(float(joint)) * int(arm.sign[k]) - arb(arm.offset[k]) for k, joint in enumerate(joints)]
     (s2, c2), (s23, c23) = q[1].sin_cos(), (q[1] + q[2]).sin_cos()
     length = arb(arm.c2)

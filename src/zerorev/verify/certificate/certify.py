@@ -4,7 +4,7 @@ On every piece of the two legs, and of the blended breakpoints: the rate of each
 the pose is in reach, in the posture of the first joints, and clear of singularities; no joint passes a limit. What is
 certified is the motion of the numbers given, as they are: of a plan file, those that stand in it.
 
-Each breakpoint is looked at both sharp and blended, for a program may be stepped. A lead-in is not looked at.
+Each breakpoint is examined both sharp and blended, for a program may be stepped. A lead-in is not examined.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def certify_motion(
     Args:
         robot: the arm.
         tool: the drill.
-        hole: the drill axis; its depth is not looked at.
+        hole: the drill axis; its depth is not examined.
         profile: spin along the path, n breakpoints.
         joints: controller angles with turns [rad], right to 1e-6 rad: at the start alone, shape (1, 6), or at all
             breakpoints, shape (n, 6). The first row gives the posture and the turns.

@@ -43,7 +43,7 @@ class Joints:
         """The joints where an arc begins, on the turns of the first stated ones [rad].
 
         Raises:
-            LostError: they are not what is stated, so the motion is another one; or they cannot be told.
+            LostError: they are not what is stated, so the motion is another one; or they are undecided.
         """
         found = self._angles(arc, 0.0)
         turns = [
@@ -62,13 +62,13 @@ class Joints:
         """The joints where an arc ends, on the turns to which the walk along it has led [rad].
 
         Raises:
-            LostError: the turns cannot be told.
+            LostError: the turns are undecided.
         """
         joints = []
         for angle, led in zip(self._angles(arc, 1.0), stretch.end, strict=True):
             turns = ((led - angle) / (2 * arb.pi())).unique_fmpz()
             if turns is None:
-                raise LostError(f"the turns of the joints could not be told {arc.place(1.0)}", proven=False)
+                raise LostError(f"the turns of the joints could not be decided {arc.place(1.0)}", proven=False)
             joints.append(angle + 2 * arb.pi() * turns)
         self.low, self.high = np.minimum(self.low, stretch.low), np.maximum(self.high, stretch.high)
         self._note(joints, arc.place(1.0))

@@ -25,7 +25,7 @@ def planned_motion(
     Args:
         arm: geometry.
         tool: the drill.
-        hole: the drill axis; its depth is not looked at.
+        hole: the drill axis; its depth is not examined.
         profile: spin along the path.
         blend: radius of the blend at the corner [m], clipped to half the shorter of the two segments; 0 for none.
         passing_blend: the same at the other inner breakpoints.

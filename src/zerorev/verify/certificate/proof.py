@@ -19,7 +19,7 @@ from zerorev.verify.certificate.walk import LostError, Slowest, Walk
 
 __all__ = ["nothing", "prove"]
 
-PIECES = 2000  # looked at before giving up, and so many more a hundred arcs
+PIECES = 2000  # examined before giving up, and so many more a hundred arcs
 ROUNDING = 2e-12  # relative: more than the 13 digits of a plan file can add to a bound
 
 
@@ -34,7 +34,7 @@ def prove(
 
     Args:
         robot: the arm.
-        motion: all of it; the least rates are told of the stroke, not of what comes before it.
+        motion: all of it; the least rates are those of the stroke, not of what comes before it.
         stated: controller angles with turns [rad], shape (n, 6): at the begin, and if n > 1 at the breakpoints that
             follow. The first row gives the posture and the turns.
         reversing: joints that are said to reverse, counted from 0: they are not certified.

@@ -76,7 +76,7 @@ class Walk:
         setting: arm and posture.
         names: of the joints.
         followed: joints that must keep one direction; one that fails to, or that cannot be decided, leaves.
-        budget: how many pieces may be looked at.
+        budget: how many pieces may be examined.
         pieces: how many were.
         direction: sign of each joint's rate once it is known.
         paused: joints that all but stand still on some piece: the signs that they have there, 0 for none, and where.

@@ -1,8 +1,8 @@
 """The arm at a stand-off as a function of the spin, in ball arithmetic and without division by what can vanish.
 
 The rate of joint i on a leg of slope u is (N_i + u M_i) / den_i, where the denominators are products of the height of
-the triangle of shoulder, elbow and wrist centre, and of sin q5: all of them are 0 or more. So the sign of a rate can be
-told at a singularity and at the edge of reach, too. The formulas serve numbers (`arb`) and series in the spin
+the triangle of shoulder, elbow and wrist centre, and of sin q5: all of them are 0 or more. So the sign of a rate is
+known at a singularity and at the edge of reach, too. The formulas serve numbers (`arb`) and series in the spin
 (`arb_series`) alike, and are written apart from the search. Everything is in model angles with sin q5 >= 0.
 """
 

@@ -71,7 +71,7 @@ class Extent:
         self.slopes = self.slope + self.d_slope
 
     def half_at(self, standoff: arb) -> arb:
-        """How far a spin at a stand-off is off the centre's, at the most [rad]."""
+        """How far a spin at a stand-off is off the centre's, at most [rad]."""
         return self.psi_half + standoff * self.slope_half
 
 

@@ -24,7 +24,7 @@ class Statement(NamedTuple):
     Attributes:
         field: of the plan file.
         words: what it says.
-        trees: those that prove it, if they are right; the first will do.
+        trees: those that prove it, if they are right; the first suffices.
     """
 
     field: str
@@ -106,7 +106,7 @@ class _Rules:
         return none and self.alike(claim, min_rate, depth, deeper=deeper)
 
     def alike(self, claim: Claim, min_rate: float, depth: float, *, deeper: bool) -> bool:
-        """Whether a claim is about the motions that are meant; with `deeper` one about a lesser depth will do."""
+        """Whether a claim is about the motions that are meant; with `deeper` one about a lesser depth suffices."""
         legs = depth - self.settings.corner
         deep = claim.depth <= legs * (1 + SAME) and (deeper or claim.depth >= legs * (1 - SAME))
         bound = self.settings.psi_bound or 0.0

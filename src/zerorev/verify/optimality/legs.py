@@ -168,7 +168,7 @@ class Legs:
         return sign
 
     def _least_cost(self) -> float:
-        """What the turns of a leg cost by themselves, at the least."""
+        """What the turns of a leg cost by themselves, at least."""
         turns = [min(f, b) or int(not any(may)) for f, b, may in zip(*self._turned(), self.may, strict=True)]
         return self.of.cost(turns)
 

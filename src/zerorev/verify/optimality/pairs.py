@@ -1,8 +1,8 @@
-"""What two legs of boxes cost and travel at the least, in ball arithmetic (theory §8.4).
+"""What two legs of boxes cost and travel at least, in ball arithmetic (theory §8.4).
 
 A pair is weighed as it is, and with the conditions that its node names: the travel less multiples of what rates have
-above the least that they must have. For legs that keep those conditions that is no more than their travel, whatever the
-multiples are, as long as they are not negative.
+above the least that they must have. For legs that keep those conditions that is no more than their travel, for any
+multiples that are not negative.
 """
 
 from __future__ import annotations

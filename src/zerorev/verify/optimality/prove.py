@@ -37,7 +37,7 @@ MOST_PARTS = 4000  # that a box, or a pair of boxes, is cut into
 NARROWEST = 1e-9  # [rad] of spin and of twist, below which a box is not cut
 FINE, FINEST = 0.05, 0.003  # [rad] of spin, below which more stand-offs are examined
 DENSE = tuple(k / 32 for k in range(1, 32, 2))
-MOST_TOLD = 10  # failures
+MOST_LISTED = 10  # failures
 
 
 def check_tree(
@@ -134,9 +134,9 @@ class _Check:
         verdict: Literal["confirmed", "refuted", "undecided"] = "confirmed"
         if failures:
             verdict = "refuted" if any(doubt.certain for doubt in failures) else "undecided"
-        told = tuple(doubt.what for doubt in sorted(failures, key=lambda doubt: not doubt.certain)[:MOST_TOLD])
+        listed = tuple(doubt.what for doubt in sorted(failures, key=lambda doubt: not doubt.certain)[:MOST_LISTED])
         counts = boxes, len(tasks), self.pairs, self.parts, undecided
-        return ProofCheck(verdict, *counts, dict(self.reasons), reach, told)
+        return ProofCheck(verdict, *counts, dict(self.reasons), reach, listed)
 
     def dead(self, task: _Task, node: Node) -> _Doubt | None:
         """Whether no leg of a dead box keeps the rules; None where that is so."""

@@ -1,4 +1,4 @@
-"""How far the joints of a box of legs travel at the least, and with which turns they fit their limits (theory §8.4)."""
+"""How far the joints of a box of legs travel at least, and with which turns they fit their limits (theory §8.4)."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def travel_of(of: Examiner, extent: Extent, looks: Sequence[Look]) -> Travel:
             step -= 2 * arb.pi() * _whole(step)
             change = (b.by_psi - a.by_psi) * extent.d_psi + (s[j] * b.by_psi - s[j - 1] * a.by_psi) * extent.d_slope
             wide = (change.abs_upper() + a.off + b.off).min(a.radius + b.radius)
-            # between any two places a joint moves by the shorter way at the least
+            # between any two places a joint moves by the shorter way at least
             clear = abs(step) + wide < arb.pi()
             linked = bool(linked and clear and swept[j - 1][i] < arb.pi())
             if linked:
@@ -129,7 +129,7 @@ def _angles(of: Examiner, extent: Extent, look: Look) -> list[_Angle]:
     if not all(varies < STEEP for varies in steepness):
         spun = psi + half * arb(0, 1)
         anywhere = directions(of.arm, (spun.cos(), spun.sin()), whole)
-        # a centre that is out of reach has no joints: any other direction of the box will do
+        # a centre that is out of reach has no joints: any other direction of the box suffices
         there = [
             one if one[0].is_finite() and one[1].is_finite() else (other[0].mid(), other[1].mid())
             for one, other in zip(there, anywhere, strict=True)

@@ -25,7 +25,7 @@ class Node(NamedTuple):
     Attributes:
         dead: intervals of slopes that no leg is in, shape (D, 2).
         closed: those of which any two, one of these and one of what is not dead, have to reach the value, shape (C, 2).
-        passed: those that its halves go on with, shape (P, 2).
+        passed: those that its halves continue with, shape (P, 2).
     """
 
     dead: Array

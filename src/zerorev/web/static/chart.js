@@ -36,7 +36,7 @@ export default {
     this.chart.dispose();
   },
   methods: {
-    // options: of ECharts, or those that are others than before; series are told apart by their ids
+    // options: of ECharts, or those that are others than before; series are distinguished by their ids
     show(options) {
       for (const axis of [options.xAxis ?? [], options.yAxis ?? []].flat()) axis.axisLabel.formatter = minus;
       if (options.tooltip) options.tooltip.formatter = tip(options.tooltip.said);

@@ -11,7 +11,7 @@ export default {
   template: `
     <section class="zr-tw" data-testid="twist-map" aria-label="Twist map">
       <div class="zr-tw-tools">
-        <button type="button" :class="{ away: !inHand }" :disabled="!inHand" @click="$emit('let_go')" data-testid="let-go" title="give up the motion by hand">back to the plan</button>
+        <button type="button" :class="{ away: !edited }" :disabled="!edited" @click="$emit('let_go')" data-testid="let-go" title="give up the motion by hand">back to the plan</button>
         <label>branch <select aria-label="branch" data-testid="branch" :value="choice" :disabled="!branches.length" @change="choose">
           <option v-for="each in branches" :key="each.value" :value="each.value">{{ each.label }}</option></select></label>
         <span class="zr-tw-zoom" role="group" aria-label="spins that are shown">
@@ -54,7 +54,7 @@ export default {
 
   data() {
     return {
-      count: "–", joints: [], travel: "", margin: "", limit: "", why: "", runs: true, inHand: false, grade: "",
+      count: "–", joints: [], travel: "", margin: "", limit: "", why: "", runs: true, edited: false, grade: "",
       choice: "", branches: [], readout: "", zones: [], lined: false, stuck: [], scale: "", loading: true,
       cover: "the map is being drawn …",
     };
@@ -154,7 +154,7 @@ export default {
       this.margin = data.margin;
       this.limit = data.limit;
       this.why = data.why;
-      this.inHand = data.in_hand;
+      this.edited = data.edited;
     },
 
     drawn({ seq, asked }) {
@@ -243,7 +243,7 @@ export default {
         return;
       }
       if (!this.held.moved) {
-        if (Math.hypot(x - this.held.x, y - this.held.y) < 2) return; // a click is no drag
+        if (Math.hypot(x - this.held.x, y - this.held.y) < 2) return; // a click, not a drag
         this.held.moved = true;
         this.take();
       }
@@ -256,7 +256,7 @@ export default {
       );
     },
 
-    /** The motion is taken in hand: other views may want to know. */
+    /** The motion is edited from now on: other views may want to know. */
     take() {
       window.dispatchEvent(new CustomEvent("zerorev-in-hand", { detail: true }));
       this.$emit("grab");

@@ -30,7 +30,7 @@ def bracket(session: Session) -> None:
     """Draw the bracket.
 
     Args:
-        session: whose motion is looked at.
+        session: whose motion is shown.
     """
     ui.html(KEYS, sanitize=False).classes("zr-curve-keys").props('aria-hidden="true"')
     words = ui.label().classes("zr-bracket-words").props('role="status" data-testid="bracket-words"')

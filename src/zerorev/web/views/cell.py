@@ -56,7 +56,7 @@ def cell(session: Session) -> CellView:
     view.on("drawn", sender.drawn)
     view.on("pick_hole", sender.picked)
     view.on("pick_cell", lambda event: session.tell("pick_cell", int(event.args["index"])))
-    view.on("seek", sender.told)
+    view.on("seek", sender.receive)
     return view
 
 
@@ -112,7 +112,7 @@ class _Sender:
         with suppress(InputError):  # gone meanwhile
             self._session.change(selected(self._session.state, event.args["id"]))
 
-    def told(self, event: GenericEventArguments) -> None:
+    def receive(self, event: GenericEventArguments) -> None:
         """The browser has gone to another place of the motion."""
         self._telling = True
         self._session.tell("seek", float(event.args["x"]))

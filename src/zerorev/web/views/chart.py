@@ -16,7 +16,7 @@ __all__ = ["INK", "LINE", "MUTED", "SURFACE", "Chart", "axis", "dashes", "pairs"
 
 ECHARTS = Path(nicegui.__file__).parent / "elements" / "echart" / "dist"
 
-# drawn as SVG, so that the colours follow the theme of the page without being drawn anew
+# drawn as SVG, so that the colours follow the theme of the page without being drawn again
 INK, MUTED, LINE, SURFACE = (f"var(--zr-{name})" for name in ("ink", "muted", "line", "surface"))
 TEXT = {"color": MUTED, "fontSize": 11, "fontFamily": "inherit"}
 

@@ -27,7 +27,7 @@ BRANCHES = {ANY: "any branch"} | {branch: f"branch {branch}" for branch in range
 
 
 def compute(session: Session, work: Work) -> None:
-    """Draw the buttons; a hole that is looked at and has no answer is planned by itself.
+    """Draw the buttons; a selected hole that has no answer is planned by itself.
 
     Args:
         session: whose job is computed.
@@ -43,7 +43,7 @@ def compute(session: Session, work: Work) -> None:
 
     def changed(before: State, after: State) -> None:
         if _settings(before) is not _settings(after):
-            asyncio.get_running_loop().call_soon(ask)  # once all views have been told
+            asyncio.get_running_loop().call_soon(ask)  # once all views have been called
 
     session.watch(changed)
 
@@ -72,7 +72,7 @@ def _wishes(session: Session, work: Work) -> None:
         _button("Certify", "verified", words, lambda: _certify(work, holes()))
         legs = _choice(LEGS, "legs", lambda value: _legs(session, value))
         branch = _choice(BRANCHES, "branch to search", lambda value: _branch(session, value))
-        words = "the motion in hand becomes the hole's answer, evaluated and checked"
+        words = "the edited motion becomes the hole's answer, evaluated and checked"
         keep = _button("Keep this motion", "push_pin", words, lambda: computing.keep(work))
 
     def draw(state: State) -> None:
@@ -141,7 +141,7 @@ def _choice(options: dict[Any, str], name: str, chosen: Callable[[Any], None]) -
 
 def _plan(work: Work, holes: Sequence[Hole], strokes: Strokes) -> None:
     state = work.session.state
-    if len(holes) > 1:  # of many, those that have no such answer yet: a job that was stopped goes on where it was
+    if len(holes) > 1:  # of many, those that have no such answer yet: a job that was stopped is resumed
         holes = [hole for hole in holes if strokes != state.strokes or hole.id not in state.answers]
         if not holes:
             note("Every hole has its answer already.")

@@ -55,7 +55,7 @@ class Fields(dict[FieldPath, Any]):
 
     def show(self, wrong: Iterable[tuple[FieldPath, InputError]]) -> bool:
         """Put each message beside its field, and take the others away; return whether there is any."""
-        told: dict[FieldPath, str] = {}
+        messages: dict[FieldPath, str] = {}
         notes: dict[str | int, str] = {}
         rest = []
         for path, error in wrong:
@@ -64,17 +64,17 @@ class Fields(dict[FieldPath, Any]):
             if at is None:
                 rest.append(str(error))
             elif at[0] in self.notes:  # short, beside the one of several fields; what is accepted stands below them
-                told.setdefault(at, error.what)
+                messages.setdefault(at, error.what)
                 notes.setdefault(at[0], f"accepted: {error.accepted}")
             else:
-                told.setdefault(at, said(error))
+                messages.setdefault(at, said(error))
         for path, field in self.items():
-            field.error = told.get(path)
+            field.error = messages.get(path)
         for name, note in self.notes.items():
             note.set_text(notes.get(name, ""))
         if self.problem is not None:
             self.problem.set_text("\n".join(rest))
-        return bool(told or rest)
+        return bool(messages or rest)
 
 
 def said(error: InputError) -> str:

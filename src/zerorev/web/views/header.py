@@ -79,7 +79,7 @@ def _theme_button(session: Session) -> None:
 
     def draw() -> None:
         _, icon, words = next(theme for theme in THEMES if theme[0] is session.theme)
-        # `ui.dark_mode` would say so again, and have the whole page styled anew, whenever any part of it changes
+        # `ui.dark_mode` would say so again, and have the whole page styled again, whenever any part of it changes
         page.run_javascript(f"setDark({json.dumps(session.theme)})")
         button.props(f'icon={icon} aria-label="theme: {words}; press for another" title="theme: {words}"')
 

@@ -69,7 +69,7 @@ class _Table:
         self.rows: dict[str, HoleRow] = _rows(session.state, {}, None)
         self._wanted: Callable[[HoleRow], bool] | None = None
         self._ids: list[str] | None = None
-        self.told: Callable[[str], object] = lambda text: None
+        self.show_count: Callable[[str], object] = lambda text: None
 
     def draw(self) -> None:
         self._widths = widths(self.rows)
@@ -100,7 +100,7 @@ class _Table:
 
     def _tell(self, ids: list[str] | None = None) -> None:
         count = len(self.rows)
-        self.told(f"{count} hole{'s' if count > 1 else ''}" if ids is None else f"{len(ids)} of {count}")
+        self.show_count(f"{count} hole{'s' if count > 1 else ''}" if ids is None else f"{len(ids)} of {count}")
 
     def _picked(self, event: events.GenericEventArguments) -> None:
         if event.args in self.rows:
@@ -183,7 +183,7 @@ def _tools(session: Session, table: _Table) -> None:
         ):
             button = ui.button(icon=icon, on_click=do, color=None).classes("zr-quiet").props("flat round dense")
             button.props(f'aria-label="{words}" data-testid="{name}"').tooltip(words)
-    table.told = shown.set_text
+    table.show_count = shown.set_text
 
     def filter_again() -> None:
         wanted, of = find.value or "", quick.value or "all"

@@ -69,7 +69,7 @@ def file_picker(
         button: that is pressed.
         opened: is given what was picked.
         kinds: of files, by their endings.
-        refused: is told why a file was not taken.
+        refused: called with the reason why a file was not taken.
         largest: size of a file [bytes].
     """
     upload = ui.upload(on_upload=opened, auto_upload=True, max_file_size=largest).classes("zr-hidden")

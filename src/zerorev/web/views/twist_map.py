@@ -86,8 +86,8 @@ class _TwistMap:
         self.choice: int | None = OWN
         self.drawn: _Wanted | None = None  # what the map was drawn of
         self.drag: object = None  # stands for the drag under way: all that it changes is one step for `Session.undo`
-        self.pending: Steered | None = None  # what is in hand, of which the other views may not know yet
-        self.passed: object = NOTHING  # what they were told of last by this map
+        self.pending: Steered | None = None  # the edited motion, which the other views may not know yet
+        self.passed: object = NOTHING  # what this map passed to them last
         self.timer: asyncio.TimerHandle | None = None
         self.interval = SOONEST
         self.drawing = asyncio.Lock()  # one map at a time: who steps through the holes waits for the last one alone
@@ -118,7 +118,7 @@ class _TwistMap:
 
     @property
     def motion(self) -> Steered | None:
-        """What is on the map: in hand, or as planned."""
+        """What is on the map: the edited motion, or the planned one."""
         return self.pending or shown(self.session.state)
 
     @property
@@ -164,7 +164,7 @@ class _TwistMap:
         """The drag is taken back."""
         self.let_pending_go()
         self.session.drop(self.drag)
-        self.show_all(fit=False)  # also where the other views were not told of the drag
+        self.show_all(fit=False)  # also where the other views do not know of the drag
 
     def on_let_go(self) -> None:
         """Back to the plan."""
@@ -173,7 +173,7 @@ class _TwistMap:
         self.session.change(steered(self.session.state, None))
 
     def on_choose(self, event: GenericEventArguments) -> None:
-        """Another branch, for the map and the motion in hand; or all of them, for the map alone."""
+        """Another branch, for the map and the edited motion; or all of them, for the map alone."""
         chosen = event.args["branch"]
         if chosen not in CHOICES:
             return
@@ -186,7 +186,7 @@ class _TwistMap:
         self.show_map()
 
     def take(self, points: Any) -> bool:
-        """Take the points of a drag as the motion in hand; points that are no motion of this hole are left alone."""
+        """Take the points of a drag as the edited motion; points that form no motion of this hole change nothing."""
         motion, hole = self.motion, self.session.state.hole
         if motion is None or hole is None:
             return False
@@ -201,19 +201,19 @@ class _TwistMap:
         return True
 
     def pass_on(self) -> None:
-        """Tell the other views what is in hand."""
+        """Pass the edited motion to the other views."""
         self.stop_timer()
         if self.pending is not None:
             self.passed = self.pending
             self.session.change(steered(self.session.state, self.pending), of=self.drag)
 
     def let_pending_go(self) -> None:
-        """What was in hand is so no more, or another has taken its place."""
+        """The edited motion was given up, or another has taken its place."""
         self.stop_timer()
         self.pending, self.passed = None, NOTHING
 
     def stop_timer(self) -> None:
-        """The other views need not be told later."""
+        """The other views need no later call."""
         if self.timer is not None:
             self.timer.cancel()
             self.timer = None
@@ -228,7 +228,7 @@ class _TwistMap:
         job, hole = state.job, state.hole
         seen = motion_look.look(Drilling(job.robot, job.tool, hole), motion.profile, motion.branch, job.settings)
         data = motion_data(job.robot, motion.profile, seen)
-        data |= {"seq": seq, "fit": fit, "in_hand": self.pending is not None or state.steered is not None}
+        data |= {"seq": seq, "fit": fit, "edited": self.pending is not None or state.steered is not None}
         if seq is None:
             held = motion_look.held(motion.profile)
             data["baseline"] = motion_look.look(
@@ -290,5 +290,5 @@ def _empty(state: State) -> dict[str, Any]:
         why = "this hole is not planned yet" if state.hole else ""
     return {
         "points": [], "runs": answer is None, "why": why, "faults": [], "marks": [], "reversals": None, "joints": [],
-        "travel": "", "margin": "", "limit": "", "in_hand": False,
+        "travel": "", "margin": "", "limit": "", "edited": False,
     }  # fmt: skip

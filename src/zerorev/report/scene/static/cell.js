@@ -7,10 +7,10 @@ import { Holes, Slice, floor, frame, free } from "zerorev-cell/cell_room.js";
 import { Track, ribbon } from "zerorev-cell/cell_trace.js";
 
 const VIEWS = { iso: [1, -1.35, 0.75], front: [1, 0, 0.12], side: [0, -1, 0.12], top: [0, -0.001, 1] };
-const SEEKS = 66; // [ms] between two that are told
+const SEEKS = 66; // [ms] between two that are reported
 const LETTER = 7.2; // [px] of a label, about: to measure one would cost a layout in every frame
 const SELDOM = 2000; // [ms] between two drawings of answers that come one after the other, where drawing is slow
-const REST = 300; // [ms] that a motion in hand has to rest before it is drawn where drawing is slow
+const REST = 300; // [ms] that an edited motion has to rest before it is drawn where drawing is slow
 
 export class Cell {
   // root: an empty element; on: pickHole(id), pickCell(number), seek(x); fine: as it is with graphics hardware
@@ -87,7 +87,7 @@ export class Cell {
   }
 
   // to a signed path distance from the corner [mm]
-  seek(x, told = false) {
+  seek(x, report = false) {
     const track = this.track;
     this.x = track ? Math.min(track.end, Math.max(track.start, x)) : 0;
     const pose = track?.at(this.x), beside = this.mode === "off" ? null : this.held, other = beside?.at(this.x);
@@ -98,7 +98,7 @@ export class Cell {
     this.arm.setHalos(track ? track.near(this.x).map((mark) => mark.joint) : []);
     if (other) this.twin.setJoints(other.joints);
     this.twin.setHalos(other ? beside.near(this.x).map((mark) => mark.joint) : []);
-    if (told) this._tell();
+    if (report) this._tell();
     this.invalidate(true);
   }
 
@@ -181,7 +181,7 @@ export class Cell {
   }
 
   _begin() {
-    this.slow = !this.fine && drawnBySoftware(); // then fewer pixels, no shadows, and not while a motion is in hand
+    this.slow = !this.fine && drawnBySoftware(); // then fewer pixels, no shadows, and not while a motion is edited
     const context = this.canvas.getContext("webgl2", { antialias: !this.slow, alpha: true });
     if (!context) throw new Error("no WebGL 2");
     const renderer = new THREE.WebGLRenderer({ canvas: this.canvas, context });
@@ -362,8 +362,8 @@ export class Cell {
   _tell() {
     const now = performance.now();
     clearTimeout(this.later);
-    if (now - (this.told ?? -SEEKS) >= SEEKS) (this.told = now), this.on.seek?.(this.x);
-    else this.later = setTimeout(() => ((this.told = performance.now()), this.on.seek?.(this.x)), SEEKS);
+    if (now - (this.reported ?? -SEEKS) >= SEEKS) (this.reported = now), this.on.seek?.(this.x);
+    else this.later = setTimeout(() => ((this.reported = performance.now()), this.on.seek?.(this.x)), SEEKS);
   }
 
   // names beside the halos, the frames, and the hole under the pointer

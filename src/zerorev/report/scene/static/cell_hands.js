@@ -3,7 +3,7 @@ import { THREE } from "nicegui-scene";
 
 const PICK = 16; // [px] how near to a hole or a cell a click has to be
 
-// names what is under the pointer; a click that is no drag picks it
+// names what is under the pointer; a click without a drag picks it
 export function point(cell) {
   let looking = null, down = null;
   cell.canvas.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));

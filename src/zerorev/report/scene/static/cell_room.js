@@ -16,7 +16,7 @@ export function bytes(text) {
 }
 
 // materials are let go and not disposed of: the last of its kind would take its shader with it,
-// and the next would compile it anew
+// and the next would compile it again
 export function free(group) {
   group.traverse((object) => {
     object.geometry?.dispose();
