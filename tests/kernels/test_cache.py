@@ -17,7 +17,7 @@ import pytest
 
 import zerorev
 from oracles.unprivileged import obeying_permissions
-from zerorev.kernels import _cache, _jit
+from zerorev.kernels import _cache, _compiling
 from zerorev.kernels.order import order_of
 
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
@@ -35,7 +35,7 @@ def twice(asked):
 
 print(twice({name}(21.0)), sum(twice.stats.cache_misses.values()))
 """
-KEPT, NOT_KEPT = _jit.ONCE + "\n", _jit.EACH_TIME + "\n"
+KEPT, NOT_KEPT = _compiling.ONCE + "\n", _compiling.EACH_TIME + "\n"
 
 JOB = """
 robot: kuka_kr6_r700_2
@@ -162,6 +162,6 @@ def test_a_read_only_installation_without_a_home_plans(tmp_path: Path):
         preexec_fn=obeying_permissions(),
     )
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count(_jit.EACH_TIME) == 1
+    assert done.stderr.count(_compiling.EACH_TIME) == 1
     assert (work / "plan.json").stat().st_size > 1000
     assert sorted(path.name for path in work.iterdir()) == ["job.yaml", "plan.json"]

@@ -11,7 +11,8 @@ import numba
 import numpy as np
 import pytest
 
-from zerorev.kernels import _jit
+import zerorev
+from zerorev.kernels import _compiling, _jit
 
 compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled, so nothing is cached")
 
@@ -98,11 +99,11 @@ def test_processes_that_need_the_same_kernels_at_once_compile_each_once(tmp_path
 def test_a_cache_that_cannot_be_locked_is_done_without(tmp_path: Path):
     folder = tmp_path / "no folder"
     folder.write_text("")
-    with _jit._turn.needed():
-        assert not _jit._turn.taken(str(folder))
-    with _jit._turn.needed():
-        assert _jit._turn.taken(str(tmp_path))
-        assert not _jit._turn.taken(str(tmp_path))
+    with _compiling.turn.needed():
+        assert not _compiling.turn.taken(str(folder))
+    with _compiling.turn.needed():
+        assert _compiling.turn.taken(str(tmp_path))
+        assert not _compiling.turn.taken(str(tmp_path))
 
 
 LEGS = """
@@ -134,3 +135,87 @@ def test_the_process_that_compiles_finds_the_same_to_the_last_bit_as_one_that_lo
     (compiled_once, first), (compiled_again, second) = run(), run()
     assert (compiled_once, compiled_again) == ("1", "0")
     assert first == second
+
+
+HIDING = """
+import importlib, sys
+from contextlib import contextmanager
+import numba
+from numba.core import caching, codegen, event, options
+from numba.core.runtime import nrt
+
+@contextmanager
+def hidden(module, name, instead=None):
+    kept = getattr(module, name)
+    delattr(module, name) if instead is None else setattr(module, name, instead)
+    for each in [each for each in sys.modules if each.startswith("zerorev.kernels")]:
+        del sys.modules[each]
+    try:
+        yield importlib.import_module("zerorev.kernels._jit")
+    finally:
+        setattr(module, name, kept)
+
+class Bare:
+    pass
+"""
+EACH_PART = """
+print(importlib.import_module("zerorev.kernels._jit")._own is None)
+sys.modules["numba.core.event"] = None  # so that it is not found where the package no longer has it
+for part in (
+    (numba.core, "event"), (nrt, "rtsys"), (caching, "UserWideCacheLocator"), (caching, "FunctionCache", Bare),
+    (caching, "IndexDataCacheFile", Bare), (codegen, "CPUCodeLibrary", Bare), (options, "DefaultOptions", Bare),
+):
+    with hidden(*part) as jit:
+        print(part[1], jit._own is None)
+"""
+PLAIN = """
+with hidden(caching, "UserWideCacheLocator") as jit:
+    import asking
+print(asking.summed(21.0), asking.lean_one([1.5]), sum(asking.summed.stats.cache_misses.values()))
+print(type(asking.summed._cache).__name__)
+"""
+ASKING = """
+from zerorev.kernels._jit import kernel, lean
+
+@lean
+def lean_one(values):
+    return 2.0 * values[0]
+
+@kernel
+def summed(x):
+    return 2.0 * x
+"""
+
+
+def _hiding(code: str, folder: Path, **environment: str) -> str:
+    (folder / "asking.py").write_text(ASKING)
+    paths = os.pathsep.join([str(folder), str(Path(zerorev.__file__).parents[1])])
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore::numba.NumbaWarning", "-c", HIDING + code],
+        env={**os.environ, "PYTHONPATH": paths, **environment},
+        capture_output=True, text=True, check=False, cwd=folder,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@compiled
+def test_where_a_private_part_of_numba_is_missing_its_own_cache_serves(tmp_path: Path):
+    with_all, *without = _hiding(EACH_PART, tmp_path).splitlines()
+    assert with_all == "False"
+    told = dict(line.split() for line in without)
+    assert len(told) == 7
+    assert set(told.values()) == {"True"}
+
+
+@compiled
+def test_the_kernels_are_kept_by_numba_alone_too(tmp_path: Path):
+    kept = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    assert [_hiding(PLAIN, tmp_path, **kept) for _ in range(2)] == [f"42.0 3.0 {n}\nFunctionCache\n" for n in (1, 0)]
+
+
+@compiled
+def test_numba_alone_compiles_where_nothing_can_be_kept(tmp_path: Path):
+    nowhere = {"NUMBA_CACHE_DIR": "/proc/none", "HOME": "/proc/none"}
+    (tmp_path / "__pycache__").write_text("")  # no folder can be made there
+    assert _hiding(PLAIN, tmp_path, **nowhere) == "42.0 3.0 1\nNullCache\n"

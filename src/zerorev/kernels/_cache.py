@@ -25,6 +25,21 @@ __all__ = ["Cache", "Turn", "cache_of", "is_kept", "stamp"]
 
 SUM = 4  # [bytes] of the sum in front of what a file holds
 
+# what is overridden of Numba; where one is missing, the override would not be called, so importing fails instead
+_NEEDED = (
+    caching.FunctionCache.load_overload,
+    caching.FunctionCache.save_overload,
+    caching.FunctionCache._load_overload,
+    caching.IndexDataCacheFile._load_index,
+    caching.IndexDataCacheFile._save_index,
+    caching.IndexDataCacheFile._load_data,
+    caching.IndexDataCacheFile._save_data,
+    caching.IndexDataCacheFile._data_path,
+    caching.IndexDataCacheFile._dump,
+    caching.IndexDataCacheFile._open_for_write,
+    caching.UserWideCacheLocator.from_function,
+)
+
 
 class Cache(caching.FunctionCache):
     """The cache of `numba.njit(cache=True)`, but a kernel that is in it is loaded without the compiler.

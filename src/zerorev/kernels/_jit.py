@@ -1,69 +1,28 @@
-"""Every compiler option, in one place, and the one notice that compiling takes a while."""
+"""Every compiler option, in one place."""
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
 import numba
-from numba.core import event
-from numba.core.codegen import CPUCodeLibrary
-from numba.core.dispatcher import Dispatcher
 
-from zerorev.kernels._cache import Turn, cache_of, is_kept
+_own: Callable[[Callable[..., Any], bool, dict[str, Any]], Any] | None
+try:
+    from zerorev.kernels._compiling import compiled_here as _own
+except (ImportError, AttributeError):  # a Numba without the private parts that the cache here builds on: its own, then
+    _own = None
 
 __all__ = ["kernel", "lean"]
 
-ONCE = "compiling kernels: takes a minute or two, once; then they are cached"
-EACH_TIME = (
-    "compiling kernels: takes a minute or two, in each run, because there is no folder to keep them in "
-    "(the environment variable NUMBA_CACHE_DIR names one)"
-)
-
 # No fastmath: it would make isnan(nan) false, and NaN is how a kernel says "no such pose".
 # Contracting a * b + c into one operation is another matter: it is faster, more precise, and keeps NaN.
-_njit: Any = numba.njit  # whose stubs do not know of `_nrt`: whether holders of arrays are counted
-_options = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
-_compiled, _uncounted = _njit(**_options, _nrt=True), _njit(**_options, _nrt=False)
-
-
-@contextmanager
-def _own_copies() -> Iterator[None]:
-    """Whatever is compiled meanwhile calls its own copies of the kernels that it calls, and no others.
-
-    Numba compiles what a kernel calls into the kernel once more, under the same name, and optimises each copy in its
-    place, so that they round differently. All copies of a name in a process give way to the first: in the process that
-    compiles that is the one by itself, in those that load it is that of the kernel which is loaded first. With a name
-    of its own each is used where it was made, and no result depends on what was compiled or loaded before.
-    """
-    finalize = CPUCodeLibrary._finalize_final_module
-
-    def finalize_with_own_copies(library: Any) -> None:
-        if library._shared_module is None:  # not loaded, but compiled
-            library._shared_module = library._final_module.clone()  # for others to link, as Numba makes it
-            for function in library._shared_module.functions:
-                if not function.is_declaration and function.linkage.name == "external":
-                    function.linkage = "linkonce_odr"
-            for function in library._final_module.functions:
-                if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                    function.linkage = "internal"
-        finalize(library)  # type: ignore[no-untyped-call]
-
-    CPUCodeLibrary._finalize_final_module = finalize_with_own_copies  # type: ignore[method-assign]
-    try:
-        yield
-    finally:
-        CPUCodeLibrary._finalize_final_module = finalize  # type: ignore[method-assign]
-
-
-_turn = Turn()
+_options: dict[str, Any] = {"nogil": True, "error_model": "numpy", "fastmath": {"contract"}}
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function at its first call with arguments of new types, or load it if it was compiled before."""
-    return _made(_compiled(function), function)
+    return _plain(function) if _own is None else _own(function, True, _options)
 
 
 def lean(function: Callable[..., Any]) -> Any:
@@ -73,35 +32,12 @@ def lean(function: Callable[..., Any]) -> Any:
     kernels call each other that is a tenth of all time. Here the caller holds what it gives; a function that makes an
     array, or gives one back, is not compiled.
     """
-    return _made(_uncounted(function), function)
+    return _plain(function) if _own is None else _own(function, False, _options)
 
 
-def _made(compiled: Any, function: Callable[..., Any]) -> Any:
-    """A compiled function with the cache and the turn of this file."""
-    if isinstance(compiled, Dispatcher):  # not so with NUMBA_DISABLE_JIT
-        compiled._cache = cache_of(function, _turn)  # type: ignore[attr-defined]
-        compile_or_load = compiled.compile
-
-        def compile_in_turn(sig: Any) -> Any:
-            with _turn.needed(), _own_copies():
-                return compile_or_load(sig)
-
-        compiled.compile = compile_in_turn  # type: ignore[method-assign]
-    return compiled
-
-
-class _SayOnce(event.Listener):
-    """Logs the first compilation of a process; loading from the cache is no compilation."""
-
-    said = False
-
-    def on_start(self, event: event.Event) -> None:
-        if not self.said:
-            self.said = True
-            logging.getLogger("zerorev").warning(ONCE if is_kept() else EACH_TIME)
-
-    def on_end(self, event: event.Event) -> None:
-        pass
-
-
-event.register("numba:compile", _SayOnce())  # type: ignore[no-untyped-call]
+def _plain(function: Callable[..., Any]) -> Any:
+    """As Numba compiles and caches it: slower to load, and stale kernels are noticed in their own file alone."""
+    try:
+        return numba.njit(cache=True, **_options)(function)
+    except RuntimeError:  # there is no folder to keep it in
+        return numba.njit(**_options)(function)
