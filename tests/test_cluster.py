@@ -75,7 +75,7 @@ def test_a_lost_worker_is_survived(task, scheduler, tmp_path):
 
 
 @pytest.mark.long
-def test_a_lost_scheduler_is_told_and_the_map_goes_on_elsewhere(task, scheduler, tmp_path):
+def test_a_lost_scheduler_is_reported_and_the_map_continues_elsewhere(task, scheduler, tmp_path):
     address, (process, *_) = scheduler
 
     def lose_it(done, of):

@@ -42,7 +42,7 @@ SAME_HOLE, SAME_ANSWER = 1e-9, 1e-6  # [m], [rad] by which a hole that was finis
 
 @dataclass(frozen=True)
 class Hole:
-    """One hole to be looked at.
+    """One hole to be examined.
 
     Attributes:
         seed: of its place.
@@ -100,7 +100,7 @@ def run(options: Options) -> Section:
     made_with = _made_with(options.peer_seeds)
     finished = Finished(options.folder / "holes.jsonl", made_with, key=lambda entry: entry["seed"])
     if finished.known:
-        print(f"  going on after {len(finished.known)} finished holes", flush=True)
+        print(f"  resuming after {len(finished.known)} finished holes", flush=True)
     holes, seen = [], list[Seen]()
 
     def asked() -> Iterator[tuple[Hole, dict[str, Any] | None]]:
@@ -116,10 +116,10 @@ def run(options: Options) -> Section:
             if len(seen) % 20 == 0:
                 print(f"  {len(seen)} of {options.holes} holes", flush=True)
     finished.remove()
-    looked_at = list(zip(holes, seen, strict=True))
-    near, anywhere = ([each for each in looked_at if each[0].near is wanted] for wanted in (True, False))
+    examined = list(zip(holes, seen, strict=True))
+    near, anywhere = ([each for each in examined if each[0].near is wanted] for wanted in (True, False))
     beaten = [text for one in seen for text in one.beaten]
-    unlike = [text for hole, one in looked_at for text in (*_depths_unlike(hole), *one.unlike)]
+    unlike = [text for hole, one in examined for text in (*_depths_unlike(hole), *one.unlike)]
     return Section(
         name="holes",
         title="Random holes in random directions",
@@ -144,12 +144,12 @@ def run(options: Options) -> Section:
             " search runs twice a hole, once in the mirror."
         ],
         failures=beaten + unlike,
-        figures={"holes": [asdict(hole) | asdict(one) for hole, one in looked_at]},
+        figures={"holes": [asdict(hole) | asdict(one) for hole, one in examined]},
     )
 
 
 def _made_with(peer_seeds: int) -> dict[str, Any]:
-    """What a finished hole depends on, but for the exact search, whose answer is looked at anew."""
+    """What a finished hole depends on, but for the exact search, whose answer is examined again."""
     peers = {"particles": PARTICLES, "iterations": ITERATIONS, "budget": BUDGET, "near": NEAR, "samples": SAMPLES}
     return {"peer_seeds": peer_seeds, **peers, **{name: version(name) for name in ("zerorev", "numpy", "scipy")}}
 
@@ -202,7 +202,7 @@ def _look_at(peer_seeds: int, asked: tuple[Hole, dict[str, Any] | None]) -> Seen
 
 
 def _is_the_same(hole: Hole, ours: Answer | None, before: Seen) -> bool:
-    """Whether an earlier run looked at this very hole and found this very answer."""
+    """Whether an earlier run examined this very hole and found this very answer."""
     if ours is None or before.ours is None:
         return ours is before.ours
     same_answer = np.allclose(_numbers(ours), before.ours, rtol=0, atol=SAME_ANSWER)
@@ -271,8 +271,8 @@ def _depths_unlike(hole: Hole) -> Iterator[str]:
         yield f"random {hole.seed}: {deepest * 1e3:.3f} mm deep, mirrored {there * 1e3:.3f} mm"
 
 
-def _row(depth: str, looked_at: Sequence[tuple[Hole, Seen]]) -> tuple[str, ...]:
-    holes, seen = [hole for hole, _ in looked_at], [one for _, one in looked_at]
+def _row(depth: str, examined: Sequence[tuple[Hole, Seen]]) -> tuple[str, ...]:
+    holes, seen = [hole for hole, _ in examined], [one for _, one in examined]
     verdicts = sum((Counter(one.verdicts) for one in seen), Counter())
     seeds = sorted({one.peer_seeds for one in seen})
     found = [one.reversals for one in seen if one.reversals is not None]

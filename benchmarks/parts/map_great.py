@@ -61,14 +61,14 @@ class _Ran:
 
 
 def run(options: Options) -> Section:
-    """Make maps of more and more cells of the same box; what was broken off is gone on with."""
+    """Make maps of more and more cells of the same box; what was broken off is resumed."""
     folder = options.folder / f"map_great_{options.cells}"
     folder.mkdir(parents=True, exist_ok=True)
     run_map(thinned(1), folder / "first.zarr", HERE)  # so that the kernels are compiled
     ran = [_ran(folder, options.cells // smaller) for smaller in SMALLER]
     shutil.rmtree(folder)
     common = [_common(less, more) for less, more in pairwise(ran)]
-    failures = [f"{each.cells:,} cells: some were never looked at" for each in ran if (each.found["status"] < 0).any()]
+    failures = [f"{each.cells:,} cells: some were never examined" for each in ran if (each.found["status"] < 0).any()]
     if apart := sum(apart for _, apart in common):
         failures.append(f"{apart:,} cells have another answer in a larger map")
     return Section(
@@ -131,7 +131,7 @@ def _notes(ran: Sequence[_Ran], common: int) -> list[str]:
         f"`zerorev map MAP -o OUT --workers {WORKERS}` on evenly thinned grids of one box in front of the robot"
         f" (`examples/maps/{GREAT_MAP.name}`): {_box(million.axes)}; {len(million.directions)} directions, ahead, ahead"
         " and down, straight down, to either side. From an empty folder to the finished map, with the start of Python"
-        " and of the workers, which weighs most in the smallest. Memory is looked at every half second; that of all"
+        " and of the workers, which weighs most in the smallest. Memory is examined every half second; that of all"
         f" {great.cost.processes} processes at once counts in each of them what they share.",
         f"The box itself has {million.cells:,} cells, which were not run. At {1 / great.each:.1f} cells a second, those"
         f" of the largest map here, they take {_time(great.each * million.cells)}, and"

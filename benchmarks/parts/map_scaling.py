@@ -28,7 +28,7 @@ CLUSTER_WORKERS = 3
 
 @dataclass(frozen=True)
 class _Made:
-    """A map, made anew.
+    """A map, made again.
 
     Attributes:
         how: in words.

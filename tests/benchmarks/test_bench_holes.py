@@ -1,4 +1,4 @@
-"""The benchmark's random holes: gone on with after a kill, and the same for any number of workers."""
+"""The benchmark's random holes: resumed after a kill, and the same for any number of workers."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class TestHoles:
         assert whole.failures == []
         assert [row[1:3] for row in whole.rows] == [("1", "1"), ("1", "1")]
 
-    def test_a_run_that_was_killed_is_gone_on_with(self, tmp_path, monkeypatch):
+    def test_a_run_that_was_killed_is_resumed(self, tmp_path, monkeypatch):
         options, asked, undisturbed = replace(QUICK, folder=tmp_path), [], tmp_path / "undisturbed"
         monkeypatch.setattr(holes, "_branch_by_branch", lambda case: {})
 
@@ -103,7 +103,7 @@ class TestHoles:
         assert list(tmp_path.rglob("*.jsonl")) == []
 
     @pytest.mark.parametrize(("field", "value"), [("ours", [0.0, 0.1, 0.2, 0.3]), ("ours", None), ("depth", 0.05)])
-    def test_a_hole_whose_answer_has_changed_is_looked_at_anew(self, field, value, monkeypatch):
+    def test_a_hole_whose_answer_has_changed_is_examined_again(self, field, value, monkeypatch):
         monkeypatch.setattr(holes, "_peers", lambda case, ours, seed: {})
         monkeypatch.setattr(holes, "_branch_by_branch", lambda case: {})
         hole = next(holes._holes(1))
@@ -112,7 +112,7 @@ class TestHoles:
         assert holes._look_at(1, (hole, kept)).beaten == ["as it was"]
         assert holes._look_at(1, (hole, kept | {field: value})).beaten == []
 
-    def test_with_other_seeds_all_are_looked_at_anew(self):
+    def test_with_other_seeds_all_are_examined_again(self):
         made = [json.dumps(holes._made_with(count)) for count in (1, 2, 1)]
         assert made[0] == made[2] != made[1]
 

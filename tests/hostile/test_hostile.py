@@ -147,7 +147,7 @@ def test_a_plan_of_a_hundred_thousand_empty_holes(folder):
     assert int(done.stdout) < 300 * 1024
 
 
-# --- places that are no files -----------------------------------------------------------------------------------------
+# --- places that are not files ----------------------------------------------------------------------------------------
 
 READERS = [
     ["plan", "{}"],
@@ -172,7 +172,7 @@ READERS = [
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices")
 @pytest.mark.parametrize("arguments", READERS, ids=" ".join)
 @pytest.mark.parametrize("what", ["pipe", "/dev/zero", "folder"])
-def test_what_is_no_file_is_not_read(arguments, what, folder, capsys, monkeypatch):
+def test_what_is_not_a_file_is_not_read(arguments, what, folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     place = what
     if what == "pipe":
@@ -195,7 +195,7 @@ def test_what_is_no_file_is_not_read(arguments, what, folder, capsys, monkeypatc
     ids=" ".join,
 )
 @pytest.mark.parametrize("what", ["pipe", "/dev/zero"])
-def test_what_is_no_file_is_not_written(arguments, what, folder, capsys, monkeypatch):
+def test_what_is_not_a_file_is_not_written(arguments, what, folder, capsys, monkeypatch):
     monkeypatch.chdir(folder)
     os.mkfifo("pipe")
     targets = {"x_mm": [500], "y_mm": [300], "z_mm": [800]}
@@ -236,14 +236,14 @@ def test_a_name_of_a_file_is_text(tmp_path, capsys, monkeypatch):
     assert r"\x1b[2Jno\u202e.yaml" in said
 
 
-def test_names_in_brackets_are_no_markup(folder, capsys):
+def test_names_in_brackets_are_not_markup(folder, capsys):
     (folder / "job.yaml").write_text(yaml.safe_dump(JOB | {"holes": [HOLE | {"id": "[red]a[/red] :smile:"}]}))
     assert main(["plan", str(folder / "job.yaml")]) == cli.FINE
     assert "[red]a[/red] :smile:" in capsys.readouterr().out
 
 
 @pytest.mark.long
-def test_a_cell_is_no_formula(tmp_path, capsys):
+def test_a_cell_is_not_a_formula(tmp_path, capsys):
     names = ["=cmd|' /C calc'!A0", "+1+1", "@SUM(1)", "-x", "\u202e=1"]
     holes = [HOLE | {"id": name} for name in names]
     (tmp_path / "job.yaml").write_text(json.dumps(JOB | {"holes": holes}))
@@ -355,7 +355,7 @@ def test_a_full_disk_keeps_what_is_finished(folder):
     assert 1 <= kept < 60
     again = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert again.returncode == cli.FINE
-    assert f"going on after {kept} of 60" in again.stderr
+    assert f"resuming after {kept} of 60" in again.stderr
     assert len(read_plan(folder / "many.json").holes) == 60
 
 
@@ -380,5 +380,5 @@ def test_a_part_that_was_altered_is_planned_again(folder, capsys):
     (folder / "again.json.part").write_bytes(b"".join([*lines[:2], changed, *lines[3:]]))
     capsys.readouterr()
     assert main(["plan", str(folder / "few.yaml"), "-o", str(folder / "again.json")]) == cli.FINE
-    assert "going on after 1 of 3 holes" in capsys.readouterr().err
+    assert "resuming after 1 of 3 holes" in capsys.readouterr().err
     assert (folder / "again.json").read_bytes() == wanted

@@ -140,7 +140,7 @@ def test_why_a_cell_has_no_answer(robot, tool, tmp_path):
     assert np.isnan(found["deepest_mm"].values[without]).all()
 
 
-def test_joint_limits_and_no_stroke_are_told_apart(robot, tool):
+def test_joint_limits_and_no_stroke_are_distinguished(robot, tool):
     target, direction = np.array([[0.5, 0.3, 0.8]]), ALONG_X
     limits = replace(robot.limits, lower=robot.limits.upper - 1e-3)
     tight = answer(Question(replace(robot, limits=limits), tool, settings=FREE), _block(target, direction))

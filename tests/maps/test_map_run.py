@@ -1,4 +1,4 @@
-"""Runs of maps: whatever interrupts them, and whoever runs them, the same bytes in the end."""
+"""Runs of maps: with any interruptions and any runner, the same bytes in the end."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def content(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-def stopped_after(count, told, task, path, *progress):
+def stopped_after(count, reported, task, path, *progress):
     """Run a map that is interrupted after so many chunks; notes those it answers."""
     mine = []
 
@@ -64,7 +64,7 @@ def stopped_after(count, told, task, path, *progress):
         if len(mine) == count:
             raise KeyboardInterrupt
         mine.append(block.number)
-        told.append(block.number)
+        reported.append(block.number)
         return answer(question, block)
 
     with pytest.MonkeyPatch.context() as patch:
@@ -74,29 +74,29 @@ def stopped_after(count, told, task, path, *progress):
 
 class TestResume:
     def test_from_any_chunk_to_the_same_bytes(self, task, straight, tmp_path):
-        path, told, progress = tmp_path / "map.zarr", [], []
+        path, reported, progress = tmp_path / "map.zarr", [], []
         for _ in range(100):
             try:
-                ran = stopped_after(5, told, task, path, lambda *done: progress.append(done))
+                ran = stopped_after(5, reported, task, path, lambda *done: progress.append(done))
             except KeyboardInterrupt:
                 continue
             break
         assert content(path) == straight
-        assert sorted(told) == list(range(ran.chunks)), "each chunk once"
+        assert sorted(reported) == list(range(ran.chunks)), "each chunk once"
         assert [done for done, _ in progress] == sorted(done for done, _ in progress)
         assert progress[-1] == (task.cells, task.cells)
 
     def test_a_finished_map_is_left_as_it_is(self, task, straight, tmp_path):
-        path, told = tmp_path / "map.zarr", []
+        path, reported = tmp_path / "map.zarr", []
         run_map(task, path, HERE)
         times = {file: file.stat().st_mtime_ns for file in path.rglob("*")}
-        ran = stopped_after(0, told, task, path)
+        ran = stopped_after(0, reported, task, path)
         assert ran.before == ran.chunks
         assert {file: file.stat().st_mtime_ns for file in path.rglob("*")} == times
 
     @pytest.mark.parametrize("how", ["flipped", "cut", "emptied", "deleted", "zeroed"])
     def test_a_damaged_chunk_is_found_and_only_it_is_answered_again(self, how, task, straight, tmp_path):
-        path, told = tmp_path / "map.zarr", []
+        path, reported = tmp_path / "map.zarr", []
         run_map(task, path, HERE)
         chunk = random.Random(how).choice([f for f in sorted(path.rglob("*")) if f.is_file() and "/c/" in str(f)
                                            and f.parent.parent.name != "map.zarr" and "_mm/" not in str(f)
@@ -107,8 +107,8 @@ class TestResume:
         else:
             data[len(data) // 2] ^= 4
             chunk.write_bytes({"flipped": data, "cut": data[:-3], "emptied": b"", "zeroed": bytes(len(data))}[how])
-        stopped_after(99, told, task, path)
-        assert len(told) == 1
+        stopped_after(99, reported, task, path)
+        assert len(reported) == 1
         assert content(path) == straight
 
     def test_what_a_kill_left_half_written_goes(self, task, straight, tmp_path):
@@ -161,7 +161,7 @@ def test_another_map_is_refused_with_the_difference_named(change, said, task, tm
     assert content(path) == before
 
 
-def test_what_is_no_map_is_left_alone(task, tmp_path):
+def test_what_is_not_a_map_is_left_alone(task, tmp_path):
     (tmp_path / "notes").mkdir()
     (tmp_path / "notes" / "notes.txt").write_text("mine")
     with pytest.raises(InputError, match="no folder of zarr"):
@@ -184,7 +184,7 @@ def test_two_runs_do_not_write_the_same(task, tmp_path):
 
 
 class TestDisk:
-    def test_without_room_is_told_before(self, task, tmp_path, monkeypatch):
+    def test_without_room_is_reported_before(self, task, tmp_path, monkeypatch):
         usage = namedtuple("usage", "total used free")
         monkeypatch.setattr(shutil, "disk_usage", lambda path: usage(2**40, 2**40, 100_000))
         with pytest.raises(OutputError, match=r"needs up to .* MiB, and the disk has 0\.1 MiB left"):
@@ -206,9 +206,9 @@ class TestDisk:
             patch.setattr(_local, "_put", put)
             with pytest.raises(ZerorevError, match=r"No space left on device; what is finished is kept, and the same"):
                 run_map(task, path, HERE)
-        told = []
-        stopped_after(99, told, task, path)
-        assert 0 < len(told) < len(straight)
+        reported = []
+        stopped_after(99, reported, task, path)
+        assert 0 < len(reported) < len(straight)
         assert content(path) == straight
 
 
@@ -218,7 +218,7 @@ def test_on_several_processes_it_is_the_same(workers, task, straight, tmp_path):
     assert content(tmp_path / "map.zarr") == straight
 
 
-def test_a_billion_cells_are_no_burden_before_they_are_asked_for(robot, tool):
+def test_a_billion_cells_cost_nothing_before_they_are_read(robot, tool):
     from zerorev.maps.chunks import Chunks
 
     axis = np.arange(1000.0) + 1000
@@ -273,20 +273,20 @@ class TestCommand:
         assert [path.name for path in tmp_path.iterdir()] == ["map.yaml"]
 
     def test_ctrl_c_keeps_what_is_finished(self, map_file, tmp_path, capsys, monkeypatch):
-        target, really, told = tmp_path / "map.zarr", run.answer, []
+        target, really, reported = tmp_path / "map.zarr", run.answer, []
 
         def interrupted(question, block):
-            told.append(block.number)
-            if len(told) == 4:
+            reported.append(block.number)
+            if len(reported) == 4:
                 raise KeyboardInterrupt
             return really(question, block)
 
         with monkeypatch.context() as patch:
             patch.setattr(run, "answer", interrupted)
             assert main(["map", str(map_file), "-o", str(target), "--workers", "1"]) == cli.INTERRUPTED
-        assert f"what is finished is kept in {target}; the same command goes on from there" in capsys.readouterr().err
+        assert f"what is finished is kept in {target}; the same command resumes" in capsys.readouterr().err
         assert main(["map", str(map_file), "-o", str(target)]) == cli.FINE
-        assert "going on after 9 of 54 cells" in capsys.readouterr().err
+        assert "resuming after 9 of 54 cells" in capsys.readouterr().err
 
 
 @pytest.mark.long

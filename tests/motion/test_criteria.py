@@ -242,7 +242,7 @@ class TestFiles:
             ("joint_stiffness_nm_per_rad: [1, 2, 3, 4, 5, 0]", "joint_stiffness_nm_per_rad.*0 is too small"),
         ],
     )
-    def test_what_is_no_weight_is_one_clear_error(self, tmp_path, text, says):
+    def test_what_is_not_a_weight_is_one_clear_error(self, tmp_path, text, says):
         with pytest.raises(InputError, match=says):
             self.read(tmp_path, text)
 

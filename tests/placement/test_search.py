@@ -149,7 +149,7 @@ class TestPlanted:
                 least = min(max(0.0, rule[hole.id](hole.target)) - hole.depth for hole in holes)
                 assert each.margin[index] == pytest.approx(least, abs=1e-12)
 
-    def test_few_holes_are_looked_at_where_one_is_always_the_worst(self, robot, tool, planted):
+    def test_few_holes_are_examined_where_one_is_always_the_worst(self, robot, tool, planted):
         job = pattern(robot, tool)
         asked = planted(lambda hole: hole.target[0] - 0.3 * (hole.id == "H3"))
         after = {}
@@ -164,7 +164,7 @@ class TestPlanted:
         assert found.room is None
         assert found.finished
 
-    def test_a_reference_along_the_drill_axis_is_no_place(self, robot, tool, planted):
+    def test_a_reference_along_the_drill_axis_is_not_a_place(self, robot, tool, planted):
         planted(lambda hole: 0.1)
         job = replace(pattern(robot, tool, np.eye(4)), psi_reference="base_y")
         found = place(job, Freedom(turn=(0.0, np.pi)), grid=3, cells=3)
@@ -267,10 +267,10 @@ class TestCommand:
         least = min(hole["deepest_mm"] - hole["depth_mm"] for hole in data["holes"])
         assert data["best"]["least_margin_mm"] == pytest.approx(least, abs=1e-6)
         plan = zr.verify_plan(zr.plan_job(zr.read_job(moved)))
-        for hole, told in zip(plan.holes, data["holes"], strict=True):
+        for hole, reported in zip(plan.holes, data["holes"], strict=True):
             assert hole.score.reversals == 0
             assert hole.verified.passed
-            assert hole.deepest * 1e3 == pytest.approx(told["deepest_mm"], abs=1e-3)
+            assert hole.deepest * 1e3 == pytest.approx(reported["deepest_mm"], abs=1e-3)
         assert (tmp_path / "fig" / "placement.png").read_bytes().startswith(b"\x89PNG")
 
     def test_no_place_drills_it(self, job_file, tmp_path, capsys):

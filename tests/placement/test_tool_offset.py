@@ -154,7 +154,7 @@ class TestLeast:
         least = least_offset(job, curve)
         assert least.offset == pytest.approx(0.1 / np.pi * np.arcsin(5 / 6), abs=1.1e-4)
 
-    def test_the_least_that_was_looked_at_is_not_gone_below(self, planted):
+    def test_the_least_that_was_examined_is_not_gone_below(self, planted):
         job, curve = planted(lambda e, a: 0.1, [0.02, 0.04], [0.0])
         least = least_offset(job, curve)
         assert (least.offset, least.fails_at) == (0.02, None)

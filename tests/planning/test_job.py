@@ -81,17 +81,17 @@ def whole(part_path, job):
 
 class TestWorkers:
     def test_the_plan_is_the_same_to_the_last_bit(self, job, plan):
-        told = []
-        other = jobs.plan_job(job, lambda *done: told.append(done), workers=2)
+        reported = []
+        other = jobs.plan_job(job, lambda *done: reported.append(done), workers=2)
         assert plan_to_json(other) == plan_to_json(plan)
         for a, b in zip(other.holes, plan.holes, strict=True):
             # processes that compile the same kernels at the same time need not round alike
             assert a.deepest == pytest.approx(b.deepest, rel=1e-12)
             assert (a.motion is None) == (b.motion is None)
             assert a.motion is None or a.motion.joints.tobytes() == b.motion.joints.tobytes()
-        assert told == [(done, 5) for done in range(6)]
+        assert reported == [(done, 5) for done in range(6)]
 
-    def test_a_worker_that_dies_is_told_in_one_message(self, job):
+    def test_a_worker_that_dies_is_reported_in_one_message(self, job):
         found = jobs.answers(job, machines=Machines(2))
         next(found)
         next(found)
@@ -103,7 +103,7 @@ class TestWorkers:
 
 @pytest.mark.usefixtures("counted")
 class TestPart:
-    def test_goes_on_from_any_hole_to_the_same_file(self, job, plan, tmp_path, counted):
+    def test_resumes_from_any_hole_to_the_same_file(self, job, plan, tmp_path, counted):
         straight = whole(tmp_path / "straight.json.part", job)
         write_plan(plan, tmp_path / "straight.json")
         assert (tmp_path / "straight.json").read_bytes() == straight
@@ -134,7 +134,7 @@ class TestPart:
         assert json.loads(whole(path, job)) == plan_to_json(plan)
         assert counted == [hole.id for hole in job.holes[1:]]
 
-    def test_a_torn_first_line_is_begun_anew(self, job, plan, tmp_path):
+    def test_a_torn_first_line_is_begun_again(self, job, plan, tmp_path):
         path = left(tmp_path, job, plan, 2)
         path.write_bytes(path.read_bytes()[:100])
         assert json.loads(whole(path, job)) == plan_to_json(plan)
@@ -153,11 +153,11 @@ class TestPart:
         path = left(tmp_path, job, plan, 2)
         before = path.read_bytes()
         changed = other(job)
-        with pytest.raises(InputError, match=r"another job, .*\(accepted: .*delete it to begin anew\)"):
+        with pytest.raises(InputError, match=r"another job, .*\(accepted: .*delete it to begin again\)"):
             Part(tmp_path / "plan.json", jobs.unanswered(changed, "asked"), changed.holes)
         assert path.read_bytes() == before
 
-    def test_of_depths_is_no_part_of_a_plan(self, job, plan, tmp_path):
+    def test_of_depths_is_not_a_part_of_a_plan(self, job, plan, tmp_path):
         left(tmp_path, job, plan, 2)
         with pytest.raises(InputError, match="another job"):
             Part(tmp_path / "plan.json", jobs.unanswered(job, "deepest"), job.holes)
@@ -191,7 +191,7 @@ class TestPart:
         assert main(["export", str(path), "--skip-failed"]) == cli.FOUND
         assert "only 2 of 5 holes" in capsys.readouterr().err
 
-    def test_without_a_hole_is_no_plan(self, job, plan, tmp_path):
+    def test_without_a_hole_is_not_a_plan(self, job, plan, tmp_path):
         path = left(tmp_path, job, plan, 1)
         path.write_bytes(path.read_bytes().splitlines(keepends=True)[0])
         with pytest.raises(InputError, match="no finished hole"):
@@ -207,7 +207,7 @@ def left(folder, job, plan, count):
 
 
 class TestInterrupted:
-    def test_the_same_command_goes_on(self, job_file, tmp_path, plan, capsys, monkeypatch, counted):
+    def test_the_same_command_resumes(self, job_file, tmp_path, plan, capsys, monkeypatch, counted):
         target, really = tmp_path / "plan.json", jobs.plan
 
         def interrupted(robot, tool, hole, settings):
@@ -220,14 +220,12 @@ class TestInterrupted:
             assert main(["plan", str(job_file), "-o", str(target)]) == cli.INTERRUPTED
         out, err = capsys.readouterr()
         assert out == ""
-        assert (
-            err == f"error: interrupted; 3 of 5 holes are kept in {target}.part; the same command goes on from there\n"
-        )
+        assert err == f"error: interrupted; 3 of 5 holes are kept in {target}.part; the same command resumes\n"
         assert not target.exists()
         counted.clear()
         assert main(["plan", str(job_file), "-o", str(target)]) == cli.FOUND
         out, err = capsys.readouterr()
-        assert err == f"note: going on after 3 of 5 holes in {target}.part\n"
+        assert err == f"note: resuming after 3 of 5 holes in {target}.part\n"
         assert sum("6 → 0" in line for line in out.splitlines()) == 4
         assert counted == ["P2", "P3"]
         assert json.loads(target.read_text())["holes"] == plan_to_json(plan)["holes"]
@@ -244,8 +242,7 @@ class TestInterrupted:
         assert out == ""
         *notes, error = err.splitlines()
         assert error == (
-            f"error: interrupted; {len(kept.holes)} of 400 holes are kept in {part};"
-            " the same command goes on from there"
+            f"error: interrupted; {len(kept.holes)} of 400 holes are kept in {part}; the same command resumes"
         )
         assert all(note.startswith("note: planning: ") for note in notes)
         assert [answer.hole.id for answer in kept.holes] == [f"P{n}" for n in range(len(kept.holes))]

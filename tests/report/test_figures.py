@@ -112,7 +112,7 @@ class TestJointAngles:
         shown = [text.get_text() for axes in joint_angles(published, published.holes[0]).axes for text in axes.texts]
         assert [text for text in shown if text.startswith("limit")] == ["limit +120"]
 
-    def test_a_baseline_that_cannot_be_run_is_told(self, make_plan):
+    def test_a_baseline_that_cannot_be_run_is_reported(self, make_plan):
         plan = make_plan()
         joints = plan.holes[0].motion.joints[:, 1]
         # A2 of the baseline goes up where the plan goes down
@@ -245,9 +245,9 @@ class TestCriticalRates:
 
 class TestWriteFigures:
     def test_three_files_a_hole_and_none_for_the_infeasible(self, published, tmp_path):
-        told = []
-        files = write_figures(published, tmp_path / "figures", lambda done, of: told.append((done, of)))
-        assert told == [(1, 3), (2, 3), (3, 3)]
+        reported = []
+        files = write_figures(published, tmp_path / "figures", lambda done, of: reported.append((done, of)))
+        assert reported == [(1, 3), (2, 3), (3, 3)]
         assert [file.name for file in files[:3]] == [f"position_1_{name}.png" for name in FIGURES]
         assert sorted((tmp_path / "figures").iterdir()) == sorted(files)
         for file in files:

@@ -86,8 +86,8 @@ def test_each_draws_its_answer_and_shows_itself_in_a_notebook(answers, name):
 def test_the_names_are_these_and_all_are_documented(answers):
     assert figures.__all__ == sorted(figures.__all__) == sorted(answers)
     for name in figures.__all__:
-        told = inspect.getdoc(getattr(figures, name))
-        assert all(f"    {each}:" in told for each in inspect.signature(getattr(figures, name)).parameters), name
+        reported = inspect.getdoc(getattr(figures, name))
+        assert all(f"    {each}:" in reported for each in inspect.signature(getattr(figures, name)).parameters), name
 
 
 def test_figures_of_one_axes_are_these():
@@ -123,7 +123,7 @@ def test_a_hole_may_be_named_given_or_left_out(published):
         title("far")
 
 
-def test_a_row_of_cells_is_no_surface(robot, tool):
+def test_a_row_of_cells_is_not_a_surface(robot, tool):
     row = made_map(robot, tool, ([300], [0, 100], [600]), WAYS[:1], lambda *_: 5.0)
     for draw in (figures.map_surface, figures.map_views):
         with pytest.raises(InputError, match="is a row of cells"):

@@ -73,7 +73,7 @@ class TestCases:
         assert answer.verified.passed
 
     @pytest.mark.parametrize("name", ["30054", "30044", "20008"])
-    def test_the_deepest_stroke_is_no_less_than_a_plan_without_reversal(self, name):
+    def test_the_deepest_stroke_is_at_least_that_of_a_plan_without_reversal(self, name):
         robot, tool, hole, settings = case(f"deepest_{name}")
         answer = plan(robot, tool, hole, settings)
         assert answer.score.reversals == 0

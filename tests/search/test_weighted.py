@@ -67,7 +67,7 @@ class TestAgainstTheExactSearch:
 
 
 class TestPlanted:
-    """The exact optimum of one criterion is known from elsewhere; here the search is not told of it."""
+    """The exact optimum of one criterion is known from elsewhere; here the search does not know it."""
 
     @pytest.mark.parametrize(("criterion", "seed"), [("travel", "margin"), ("margin", "travel")])
     def test_is_found_from_the_answer_to_another_question(self, robot, tool, position, monkeypatch, criterion, seed):
@@ -82,7 +82,7 @@ class TestPlanted:
         assert cost_of(robot, tool, hole, settings, found) <= planted + 1e-5
 
     def test_is_found_where_limits_leave_little_else(self, robot, tool, positions):
-        """A motion is planted by joint limits around its joints; the survey is told nothing of it."""
+        """A motion is planted by joint limits around its joints; the survey does not know of it."""
         first, settings = positions[0], asking(("travel", 1.0), min_rate=0.0)
         joints = evaluate(robot, tool, first.hole, first.profile, first.branch).motion.joints
         limits = replace(robot.limits, lower=joints.min(axis=0) - 0.03, upper=joints.max(axis=0) + 0.03)

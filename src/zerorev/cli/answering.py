@@ -76,7 +76,7 @@ def _answer(
     """Hand out the answers of a job, with progress; an interruption says what is kept."""
     total, before = len(job.holes), part.done if part else 0
     if part and before:
-        terminal.note(f"going on after {before} of {total} holes in {part.path}")
+        terminal.note(f"resuming after {before} of {total} holes in {part.path}")
     try:
         with (
             terminal.progress("planning" if strokes == "asked" else "deepest strokes", total) as progress,
@@ -92,7 +92,7 @@ def _answer(
     except KeyboardInterrupt:
         if part and part.done:
             kept = f"{part.done} of {total} holes are kept in {part.path}"
-            raise KeyboardInterrupt(f"interrupted; {kept}; the same command goes on from there") from None
+            raise KeyboardInterrupt(f"interrupted; {kept}; the same command resumes") from None
         raise
 
 

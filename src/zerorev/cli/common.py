@@ -75,7 +75,7 @@ def _whole(kind: object, tokens: Sequence[Token]) -> int:
     try:
         return int(tokens[0].value)
     except ValueError:
-        raise ValueError(f"'{tokens[0].value}' is no integer") from None
+        raise ValueError(f"'{tokens[0].value}' is not an integer") from None
 
 
 Whole = Annotated[int, Parameter(converter=_whole)]
@@ -110,7 +110,7 @@ def numbers(text: str, where: str) -> list[float]:
         return numbers
     start, stop, step = numbers
     if step <= 0 or stop < start or (stop - start) / step > MOST_NUMBERS:
-        raise InputError(f"'{text}' is no range", where=where, accepted=f"{accepted}, {MOST_NUMBERS} steps at most")
+        raise InputError(f"'{text}' is not a range", where=where, accepted=f"{accepted}, {MOST_NUMBERS} steps at most")
     return [start + n * step for n in range(int((stop - start) / step + 1e-9) + 1)]
 
 

@@ -24,7 +24,7 @@ def depth(
     """Find the deepest stroke of each hole that has no reversal, and the motion that reaches it, and check that.
 
     The holes need no depth_mm. What DEPTHS.json holds is checked and exported as a plan is. The finished holes are kept
-    in DEPTHS.json.part on the way; after an interruption the same command goes on from there. The motion threshold
+    in DEPTHS.json.part on the way; after an interruption the same command resumes. The motion threshold
     holds at every point, regardless of min_rate_rule.
 
     Args:

@@ -12,7 +12,7 @@ __all__ = ["export"]
 
 @app.command
 def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
-    """Write a plan as a robot program, after a last look at its speeds, turns and poses.
+    """Write a plan as a robot program, after a last check of its speeds, turns and poses.
 
     A plan file that plan or check has checked on this machine is not checked again, as long as it is unchanged.
 

@@ -24,7 +24,7 @@ def run(
 ) -> int:
     """Map where a robot can drill: the deepest stroke, or another quantity, over targets and directions.
 
-    What is finished is kept in the folder of the map at any moment; after an interruption the same command goes on from
+    What is finished is kept in the folder of the map at any moment; after an interruption the same command resumes from
     there and ends with the same bytes. On a finished map it looks for damage, and mends it.
 
     Args:
@@ -56,7 +56,7 @@ def run(
             def tell(done: int, of: int) -> None:
                 nonlocal begun
                 if not begun and 0 < done < of:
-                    terminal.note(f"going on after {done:,} of {of:,} cells in {output}")
+                    terminal.note(f"resuming after {done:,} of {of:,} cells in {output}")
                 begun = True
                 if progress:
                     progress(done, of)
@@ -66,7 +66,7 @@ def run(
         if not begun:
             raise
         raise KeyboardInterrupt(
-            f"interrupted; what is finished is kept in {output}; the same command goes on from there"
+            f"interrupted; what is finished is kept in {output}; the same command resumes"
         ) from None
     if ran.before == ran.chunks:
         terminal.note(f"the map in {output} was finished, and is whole")

@@ -41,7 +41,7 @@ def place(
     scheduler: str | None = None,
     json: bool = False,
 ) -> int:
-    """Find where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
+    """Find where the part of a job should stand, so that every hole is drilled without a reversal and with a margin.
 
     The part is moved from where the job has it, in the robot's base frame, as far as the ranges allow. What a place is
     worth is its least margin: the deepest stroke of the worst hole less the depth that it needs. After Ctrl-C the best
@@ -98,7 +98,7 @@ def place(
         for line in written:
             terminal.say(line)
     if write_job is not None and found.least < 0:
-        terminal.note("no job written: no place that was looked at drills every hole")
+        terminal.note("no job written: no place that was examined drills every hole")
     if stopped:
         raise KeyboardInterrupt(f"interrupted; the best place so far is {'written' if output else 'shown'}")
     return FINE if found.least >= 0 else FOUND
@@ -149,7 +149,7 @@ def _range(text: str, option: str) -> tuple[float, float]:
     except ValueError:
         ends = []
     if len(ends) not in (1, 2) or not all(map(math.isfinite, ends)):
-        raise InputError(f"'{text}' is no range", where=option, accepted=accepted)
+        raise InputError(f"'{text}' is not a range", where=option, accepted=accepted)
     if ends[0] > ends[-1]:
         raise InputError(f"'{text}' is empty: it starts above its stop", where=option, accepted=accepted)
     if option == "--turn-deg" and ends[-1] - ends[0] > 360:

@@ -24,8 +24,8 @@ def plan(
 ) -> int:
     """Find the drilling motion of each hole of a job, and check it.
 
-    With -o the finished holes are kept in PLAN.json.part on the way; after an interruption the same command goes on
-    from there.
+    With -o the finished holes are kept in PLAN.json.part on the way; after an interruption the same command
+    resumes.
 
     Args:
         job: The job file (YAML): robot, tool, holes.

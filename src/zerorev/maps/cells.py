@@ -51,7 +51,7 @@ def columns_of(question: Question) -> dict[str, tuple[str, str, str]]:
     """The variables of a map: data type, unit and title of each by its name; -1 or NaN where there is nothing."""
     kind = quantity(question.quantity)
     whole = {
-        "status": "what became of the cell; -1: not yet looked at",
+        "status": "what became of the cell; -1: not yet examined",
         "branch": "inverse-kinematics branch; -1: none",
     }
     count = kind.unit == "1"

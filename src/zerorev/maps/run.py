@@ -39,14 +39,14 @@ def run_map(
 ) -> Ran:
     """Answer the chunks of a map that are not there yet, or not whole, and write each as soon as it is answered.
 
-    However it is ended, what was written stays, and the same call goes on from there; the finished map is the same to
-    the last bit, whatever interruptions it had and whoever ran it.
+    However it is ended, what was written stays, and the same call resumes; the finished map is the same to
+    the last bit, regardless of interruptions and of the runner.
 
     Args:
         task: the map.
         path: its folder.
         machines: to run it on.
-        progress: told how many cells are done, and of how many.
+        progress: called with the number of cells done and in all.
 
     Raises:
         OutputError: it cannot be written, or the disk is full.

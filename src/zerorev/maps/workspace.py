@@ -1,4 +1,4 @@
-"""Workspace maps on disk: an xarray dataset in zarr that is filled chunk by chunk and may be left and gone on with.
+"""Workspace maps on disk: an xarray dataset in zarr that is filled chunk by chunk and may be left and resumed.
 
 Each variable of a chunk is a file of its own that ends in a checksum (CRC-32C, zarr's own codec), written beside and
 renamed. A chunk is finished where all of its files are there and whole; nothing else keeps the books.
@@ -85,7 +85,7 @@ class MapStore:
         except Exception as error:  # what zarr raises on a damaged store is of many kinds
             os.close(self._lock)
             raise InputError(
-                f"is damaged: {error}", where=str(self.path), accepted=f"{ACCEPTED}; delete it to begin anew"
+                f"is damaged: {error}", where=str(self.path), accepted=f"{ACCEPTED}; delete it to begin again"
             ) from None
         return self
 
@@ -115,7 +115,7 @@ class MapStore:
         except OSError as error:
             raise ZerorevError(
                 f"cannot write {self.path}: {error.strerror or error}; what is finished is kept, and the same command"
-                " goes on from there"
+                " resumes"
             ) from None
 
     def _files(self, number: int) -> Iterator[Path]:
@@ -164,7 +164,7 @@ def read_workspace_map(path: str | Path, *, load: bool = True) -> Dataset:
 
     Args:
         path: the folder.
-        load: whether to have it all in memory; else its variables are read when they are looked at.
+        load: whether to have it all in memory; else its variables are read when they are examined.
 
     Raises:
         InputError: there is no such folder, it holds no workspace map, or it is damaged.
@@ -241,7 +241,7 @@ def _skeleton(task: MapTask) -> Dataset:
 
 def _check_same(found: Dataset, wanted: Dataset, path: str) -> None:
     """Refuse a map of other settings, and name the first that differs."""
-    accepted = "the map of the same command, to go on with; or another folder"
+    accepted = "the map of the same command, to continue with; or another folder"
     there, here = _flat(found.attrs), _flat(wanted.attrs)
     for key in sorted({*there, *here}):
         if there.get(key) != here.get(key):

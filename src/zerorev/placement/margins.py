@@ -25,7 +25,7 @@ class Look:
     Attributes:
         place: shift [m] and turn [rad], shape (4,).
         order: of the holes to look at, by their index in the job.
-        enough: margin [m]; once a hole has no more than that, the others are not looked at.
+        enough: margin [m]; once a hole has no more than that, the others are not examined.
     """
 
     place: Array
@@ -54,7 +54,7 @@ class Margins:
         self._worst = np.zeros(self.count)
 
     def __call__(self, places: Array, enough: float = -np.inf, holes: Sequence[int] | None = None) -> Iterator[Array]:
-        """Of each place in turn the margin of each hole [m], shape (H,): deepest less needed; NaN: not looked at.
+        """Of each place in turn the margin of each hole [m], shape (H,): deepest less needed; NaN: not examined.
 
         Args:
             places: shape (P, 4).
@@ -75,7 +75,7 @@ class Asked:
         self.job = job
 
     def __call__(self, look: Look) -> Array:
-        """The margins [m], shape (H,), of the holes that were looked at; NaN of the others."""
+        """The margins [m], shape (H,), of the holes that were examined; NaN of the others."""
         margins = np.full(len(self.job.holes), np.nan)
         try:
             moved = job_at(self.job, look.place)

@@ -2,7 +2,7 @@
 
 The margin of one hole is nearly everywhere a smooth function of the place; the least of all margins is not, for it has
 its peaks where several holes are equally bad. So the slopes of the worst holes are measured, a linear programme says
-where the least of them is greatest within a small box, and what is found there is believed only once it is looked at.
+where the least of them is greatest within a small box, and what is found there is believed only once it is examined.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from zerorev.model._arrays import Array
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Margins, least
 
-__all__ = ["END", "bettered"]
+__all__ = ["END", "improved"]
 
 END = np.array([2.5e-4, 2.5e-4, 2.5e-4, np.deg2rad(0.025)])  # steps below which it is at its end [m, rad]
 ACTIVE = 12  # holes, the worst, whose slopes are measured
@@ -28,7 +28,7 @@ LEVER = np.array([1.0, 1.0, 1.0, 0.1])  # [m] by which a turn is held against a 
 GAIN = 1e-6  # [m] less is none
 
 
-def bettered(
+def improved(
     margins: Margins, freedom: Freedom, place: Array, known: Array, step: Array, tell: Callable[[float], None]
 ) -> tuple[Array, Array]:
     """The best place near one, and the margins there.
@@ -39,7 +39,7 @@ def bettered(
         place: to start from, shape (4,).
         known: the margins there [m], shape (H,).
         step: first step along each axis, shape (4,).
-        tell: told after each round how far it is, 0 to 1.
+        tell: called after each round with the part that is done, 0 to 1.
     """
     axes = freedom.granted
     first = step
@@ -52,7 +52,10 @@ def bettered(
             probes[2 * n : 2 * n + 2, axis] += [-step[axis], step[axis]]
         probes = freedom.rounded(probes)
         seen = np.array(list(margins(probes, holes=active)))[:, active]
-        tried = [*_foretold(freedom, axes, place, step, known[active], probes, seen), probes[seen.min(axis=1).argmax()]]
+        tried = [
+            *_predicted(freedom, axes, place, step, known[active], probes, seen),
+            probes[seen.min(axis=1).argmax()],
+        ]
         worst = least(known)
         for there, found in zip(tried, margins(np.array(tried), worst + GAIN), strict=True):
             if least(found, worst + GAIN) > least(known):
@@ -63,7 +66,7 @@ def bettered(
     return place, known
 
 
-def _foretold(
+def _predicted(
     freedom: Freedom, axes: list[int], place: Array, step: Array, known: Array, probes: Array, seen: Array
 ) -> list[Array]:
     """Where the least margin should be greatest, by the slopes between the probes, in boxes of each reach."""

@@ -1,4 +1,4 @@
-"""Where a part should stand: a coarse grid over the freedom, its best places bettered, and the room about the best.
+"""Where a part should stand: a coarse grid over the freedom, its best places improved, and the room about the best.
 
 What a place is worth is its least margin: how much deeper than needed its worst hole could be drilled without a
 reversal.
@@ -16,7 +16,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.job import Job
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Asked, Margins, least
-from zerorev.placement.refine import bettered
+from zerorev.placement.refine import improved
 from zerorev.placement.room import Slice, room, slices
 from zerorev.workers import HERE, Machines, Workers
 
@@ -41,10 +41,10 @@ class Placement:
         grid: values of the coarse grid along each axis [m or rad], four of them.
         found: least margin of its places [m], shape (X, Y, Z, T); NaN: no better than others, so not known in full.
         room: how far the part may be moved from the best place along each axis, the others as they are, before some
-            hole is too shallow [m or rad], shape (4, 2), 0 or less and 0 or more; None: not looked at, or too shallow.
+            hole is too shallow [m or rad], shape (4, 2), 0 or less and 0 or more; None: not examined, or too shallow.
         slices: the least margin over the granted axes, two at a time, through the best place.
         strokes: how many deepest strokes were found.
-        finished: whether nothing is left to be looked at.
+        finished: whether nothing is left to be examined.
     """
 
     place: Array
@@ -77,7 +77,7 @@ def place(
     machines: Machines = HERE,
     progress: Progress | None = None,
 ) -> Placement:
-    """Where the part of a job should stand, so that every hole is drilled without a reversal with room to spare.
+    """Where the part of a job should stand, so that every hole is drilled without a reversal and with a margin.
 
     Args:
         job: robot, tool, holes with their depths, settings, and where the part stands now.
@@ -85,7 +85,7 @@ def place(
         grid: places of the coarse grid along each granted axis; what is narrower than its meshes may be overlooked.
         cells: of each slice, along each axis; 0: no slices.
         machines: to run it on; the answer is the same.
-        progress: told (what is done, how much of it is done, how much it is in all).
+        progress: called with what is done, how much of it is done, how much it is in all.
 
     Raises:
         InputError: a grid of fewer than two places, a hole with a given motion.
@@ -168,7 +168,7 @@ def _coarse(margins: Margins, freedom: Freedom, grid: int, tell: Progress) -> It
 def _refined(
     known: Placement, best: Sequence[tuple[Array, Array]], margins: Margins, freedom: Freedom, tell: Progress
 ) -> Iterator[Placement]:
-    """From the best places of the grid that are no neighbours of each other to the best near each."""
+    """From the best places of the grid that are not neighbours of each other to the best near each."""
     mesh = np.array([axis[1] - axis[0] if axis.size > 1 else 1.0 for axis in known.grid])
     starts: list[tuple[Array, Array]] = []
     for there, seen in best or [(known.place, known.margins)]:
@@ -177,11 +177,11 @@ def _refined(
     total = 100 * len(starts)
     for n, start in enumerate(starts):
 
-        def told(part: float, before: int = 100 * n) -> None:
+        def report(part: float, before: int = 100 * n) -> None:
             tell("refining", before + int(100 * part), total)
 
-        told(0.0)
-        there, seen = bettered(margins, freedom, *start, mesh / 2, told)
+        report(0.0)
+        there, seen = improved(margins, freedom, *start, mesh / 2, report)
         if least(seen) > known.least:
             known = replace(known, place=there, margins=seen)
         known = replace(known, strokes=margins.strokes)

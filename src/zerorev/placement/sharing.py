@@ -59,7 +59,7 @@ def share(
         balance: no robot takes more than an even share of the holes, or no more above it than it must; among such
             shares the least margin counts first, then the sum of the margins.
         machines: to run it on; the answer is the same.
-        progress: told how many strokes are known, and of how many.
+        progress: called with the number of strokes known and in all.
 
     Raises:
         InputError: fewer than two jobs, a hole that is not the same in two jobs, a hole with a given motion.

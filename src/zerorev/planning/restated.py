@@ -215,7 +215,7 @@ def _slack(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan, own: 
 
 
 def _comparable(stated: Verification, found: Verification, fails: bool) -> Verification:
-    """The outcome of the check; where something fails, that is said already, whatever was stated of it."""
+    """The outcome of the check; where something fails, that is said already, regardless of what was stated of it."""
     return replace(found, passed=stated.passed, failures=stated.failures) if fails else found
 
 

@@ -68,7 +68,7 @@ class Sides(NamedTuple):
 
 
 class Legs(NamedTuple):
-    """Legs that will do, in order of their rows, and what they are worth; shape (n,), extents (n, 6).
+    """Admissible legs, in order of their rows, and what they are worth; shape (n,), extents (n, 6).
 
     `at_poses` has a column for each criterion of a pose (`zerorev.motion.criteria.AT_POSES`), NaN where it does not
     weigh.
@@ -128,7 +128,7 @@ class LegPairs:
         return rates
 
     def judged(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> tuple[Array, Array]:
-        """What each leg has to spare [rad/m], below 0 where it will not do, and its margin [rad/m], each (n,).
+        """The slack of each leg [rad/m], below 0 where it is not admissible, and its margin [rad/m], each (n,).
 
         Args:
             sides: what the legs are held to.
@@ -156,7 +156,7 @@ class LegPairs:
         return worst, slowest[sides.keep].min(axis=0, initial=np.inf)
 
     def slopes(self, sides: Sides, slopes: Array, least: float, *, fine: bool) -> tuple[Counts, Array]:
-        """Of given slopes those that will do, with the ends of their intervals: rows and slopes, each (n,).
+        """Of given slopes the admissible ones, with the ends of their intervals: rows and slopes, each (n,).
 
         Args:
             sides: what the legs are held to.
@@ -180,19 +180,19 @@ class LegPairs:
         closer = np.linspace(before, after, CLOSER_SLOPES + 2, axis=1)[:, 1:-1]
         order = np.argsort(both := np.hstack([slopes, closer]), axis=1)
         slopes = np.take_along_axis(both, order, axis=1)
-        will_do = np.take_along_axis(np.hstack([spared, spare_at(closer)]), order, axis=1) >= 0
+        admissible = np.take_along_axis(np.hstack([spared, spare_at(closer)]), order, axis=1) >= 0
 
-        row, j = np.nonzero(will_do[:, 1:] != will_do[:, :-1])
-        good = np.where(will_do[row, j], slopes[row, j], slopes[row, j + 1])
-        bad = np.where(will_do[row, j], slopes[row, j + 1], slopes[row, j])
+        row, j = np.nonzero(admissible[:, 1:] != admissible[:, :-1])
+        good = np.where(admissible[row, j], slopes[row, j], slopes[row, j + 1])
+        bad = np.where(admissible[row, j], slopes[row, j + 1], slopes[row, j])
         for _ in range(ends if row.size else 0):
             middle = (good + bad) / 2
             fits = spare(row, middle) >= 0
             good, bad = np.where(fits, middle, good), np.where(fits, bad, middle)
-        return np.concatenate([np.nonzero(will_do)[0], row]), np.concatenate([slopes[will_do], good])
+        return np.concatenate([np.nonzero(admissible)[0], row]), np.concatenate([slopes[admissible], good])
 
     def followed(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> Legs:
-        """Legs that will do, with all that the criteria take of them; those that jump are left out.
+        """Admissible legs, with all that the criteria take of them; those that jump are left out.
 
         The margin is taken from the nodes asked for; all else varies slowly and is taken from NODES.
         """

@@ -149,13 +149,13 @@ class _WeightedLegs(LegPairs):
     def zoomed(self, seed: Point, least: float, *, fine: bool) -> Point:
         """The best point around, as far as a window that follows it and shrinks can tell; inf where there is none.
 
-        What is looked at lies at distances of many sizes, others at every step: where the sum has a crease, only few
+        What is examined lies at distances of many sizes, others at every step: where the sum has a crease, only few
         directions lead down.
 
         Args:
             seed: where to begin.
             least: motion threshold [rad/m].
-            fine: whether the window begins where the rough look ended.
+            fine: whether the window begins where the rough pass ended.
         """
         best = seed._replace(cost=np.inf)
         begin, end = (10 * ROUGH, FINE) if fine else (2 * np.pi / GRID, ROUGH)

@@ -37,11 +37,11 @@ CLOSING = 2.0  # [s] that a task is given to end by itself when the app ends
 class _Task:
     """A task in its thread; what it finds waits here to be taken."""
 
-    def __init__(self, work: Callable[[], Iterable[Any]], told: Callable[[], None]) -> None:
+    def __init__(self, work: Callable[[], Iterable[Any]], report: Callable[[], None]) -> None:
         self.found: deque[Any] = deque()
         self.cancelled = self.ended = False
         self.trouble: str | None = None
-        self._work, self._told = work, told
+        self._work, self._report = work, report
         self.thread = threading.Thread(target=self._run, name="zerorev-work", daemon=True)
         self.thread.start()
 
@@ -54,14 +54,14 @@ class _Task:
                     if self.cancelled:
                         break
                     self.found.append(result)
-                    self._told()
+                    self._report()
         except ZerorevError as error:
             self.trouble = str(error)
         except Exception as error:
             logging.getLogger("zerorev").exception("a fault in zerorev itself; please report the lines below")
             self.trouble = f"a fault in zerorev itself ({type(error).__name__}: {error}); the terminal says more"
         self.ended = True
-        self._told()
+        self._report()
 
 
 def _generated(results: Iterable[Any]) -> Generator[Any, None, None]:
@@ -73,7 +73,7 @@ class Work:
     """The long work of one session: one task at a time; what it finds goes to the session as it comes.
 
     A task lasts as long as the session's state shows its progress: whoever shows a state without, as a job that is
-    opened anew, has stopped it.
+    opened again, has stopped it.
 
     Attributes:
         session: whose.
@@ -118,13 +118,13 @@ class Work:
         self._let_go()
         loop, news = asyncio.get_running_loop(), asyncio.Event()
 
-        def told() -> None:
+        def report() -> None:
             with suppress(RuntimeError):  # the loop is closed: the app has ended
                 loop.call_soon_threadsafe(news.set)
 
         begun = Progress(title, 0, total, each)
         self.session.change(replace(self.session.state, progress=begun, trouble=None, outcome=None))
-        self._task = task = _Task(run, told)
+        self._task = task = _Task(run, report)
         self._tasks.add(task)
         self._following = loop.create_task(self._follow(task, news, begun, take, said))
         return True
@@ -152,7 +152,7 @@ class Work:
         while not ended:
             await news.wait()
             news.clear()
-            ended = task.ended  # looked at before its results, so that none is missed
+            ended = task.ended  # examined before its results, so that none is missed
             found = [task.found.popleft() for _ in range(len(task.found))]
             if task is self._task and self.busy:
                 done += len(found)
@@ -212,7 +212,7 @@ def plan(work: Work, holes: Sequence[Hole], strokes: Strokes = "asked") -> None:
 
 
 def keep(work: Work) -> None:
-    """Take the motion in hand for the selected hole's answer: evaluated and checked as a planned one is."""
+    """Take the edited motion for the selected hole's answer: evaluated and checked as a planned one is."""
     state = work.session.state
     if state.job is None or state.hole is None or state.steered is None:
         return

@@ -62,11 +62,11 @@ def test_the_plane_with_the_best_cell_comes_first(found):
 
 def test_colours_grow_lighter_with_the_value_and_greys_say_why(found):
     cut = slice_of(found, 0, "x", 2)
-    told = np.isfinite(cut.value)
+    reported = np.isfinite(cut.value)
     light = np.array([np.dot(to_rgb(colour), (0.299, 0.587, 0.114)) for colour in cut.colours])
-    order = np.argsort(cut.value[told])
-    assert (np.diff(light[told][order]) >= -1e-9).all()
-    assert {colour for colour, there in zip(cut.colours, told, strict=True) if not there} == {
+    order = np.argsort(cut.value[reported])
+    assert (np.diff(light[reported][order]) >= -1e-9).all()
+    assert {colour for colour, there in zip(cut.colours, reported, strict=True) if not there} == {
         WHY_COLOURS["out_of_reach"]
     }
     assert cut.legend[0].words == "0.0 mm"
@@ -155,7 +155,7 @@ def test_a_computed_plane_holds_what_the_depth_search_says(robot, tool, cut, tmp
     unseen = [int((each["status"].values == -1).sum()) for each in (*growing, whole)]
     assert unseen == sorted(unseen, reverse=True)
     assert (unseen[0] > 0, unseen[-1]) == (True, 0)
-    assert slice_of(growing[0]).legend[-1].words == f"not yet looked at: {unseen[0]}"
+    assert slice_of(growing[0]).legend[-1].words == f"not yet examined: {unseen[0]}"
     seen = slice_of(whole)
     assert not list(tmp_path.iterdir())
     assert seen.value.shape == (9,)

@@ -84,9 +84,9 @@ def test_reversals_have_their_colours(robot, tool):
 
 def test_a_small_plane_has_its_numbers(found):
     plane = planes_of(cells_of(found))[0]
-    told = {text.xy: text.get_text() for text in planes_figure([plane], "robot").axes[0].texts}
+    reported = {text.xy: text.get_text() for text in planes_figure([plane], "robot").axes[0].texts}
     for (row, column), value in np.ndenumerate(plane.value):
-        assert told[plane.width[column], plane.height[row]] == f"{value:.1f}"
+        assert reported[plane.width[column], plane.height[row]] == f"{value:.1f}"
 
 
 def test_surface_lies_as_deep_as_the_strokes(found):

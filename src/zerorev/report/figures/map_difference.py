@@ -52,10 +52,10 @@ def difference_figure(apart: Difference, names: tuple[str, str]) -> Figure:
         names: what they are called.
 
     Raises:
-        InputError: their common targets are no grid, so that there is no plane.
+        InputError: their common targets do not form a grid, so that there is no plane.
     """
-    direction, told = 0, ~np.isnan(apart.change)
-    if told.any():
+    direction, known = 0, ~np.isnan(apart.change)
+    if known.any():
         direction = int(np.nanargmax(np.abs(apart.change))) % len(apart.direction)
     sides = [planes_of(each, direction) for each in apart.fields]
     number = int(np.argmax([np.nan_to_num(np.abs(plane.value)).max() for plane in sides[2]]))
@@ -74,8 +74,8 @@ def difference_figure(apart: Difference, names: tuple[str, str]) -> Figure:
     import matplotlib
     from matplotlib.colors import Normalize
 
-    told = np.abs(change.value[~np.isnan(change.value)])
-    most = float(told.max()) if told.size and told.max() > 0 else 1.0
+    known = np.abs(change.value[~np.isnan(change.value)])
+    most = float(known.max()) if known.size and known.max() > 0 else 1.0
     diverging, span = matplotlib.colormaps[CHANGE_MAP], Normalize(-most, most)
     heat(panels[2], change, diverging, span)
     if change.value.size <= NUMBERED // 2:

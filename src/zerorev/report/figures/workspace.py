@@ -75,7 +75,7 @@ def map_figures(
         at: target of the rose [mm]; None: that of the best cell.
 
     Raises:
-        InputError: `at` is no target of the map.
+        InputError: `at` is not a target of the map.
     """
     cells = cells_of(found)
     _row_of(cells, at)
@@ -170,7 +170,7 @@ def map_rose(found: Dataset, at: Sequence[float] | None = None, *, ax: Axes | No
         ax: to draw into; None: a figure with a heading.
 
     Raises:
-        InputError: `at` is no target of the map, or the map has one direction.
+        InputError: `at` is not a target of the map, or the map has one direction.
     """
     cells = cells_of(found)
     if len(cells.direction) < 2:

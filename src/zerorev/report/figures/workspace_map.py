@@ -28,7 +28,7 @@ NUMBERED = 200  # cells of a single plane that have their number written into th
 LOW = 4.5  # [inches] a figure so low has no room for a long label in one line
 MOST_PLANES = 12  # in one picture, evenly chosen
 LEAST_SIZE_MM = 50.0  # of a picture in 3D, each way
-RELIEF = 0.35  # of the plane's size, where a value is no length
+RELIEF = 0.35  # of the plane's size, where a value is not a length
 ROBOT_COLOUR, RING = "#D55E00", "#c00000"
 
 
@@ -43,9 +43,9 @@ def colours_of(quantity: Quantity, values: Array) -> tuple[Any, Normalize]:
 
     if quantity.variable == "reversals":
         return ListedColormap(list(style.REVERSAL_COLOURS)), Normalize(-0.5, len(style.REVERSAL_COLOURS) - 0.5)
-    told = values[~np.isnan(values)]
-    low = 0.0 if quantity.more_is_better or not told.size else float(told.min())
-    high = float(told.max()) if told.size else 1.0
+    known = values[~np.isnan(values)]
+    low = 0.0 if quantity.more_is_better or not known.size else float(known.min())
+    high = float(known.max()) if known.size else 1.0
     return matplotlib.colormaps[VALUE_MAP], Normalize(low, high if high > low else low + 1.0)
 
 
@@ -179,8 +179,8 @@ def views_figure(planes: Sequence[Plane], subtitle: str, robot: Array) -> Figure
 
 def best_plane(planes: Sequence[Plane]) -> Plane:
     """The plane with the best cell, or the first where no plane has an answer."""
-    told = [plane for plane in planes if not np.isnan(plane.value).all()]
-    return (max if planes[0].quantity.more_is_better else min)(told, key=_best_value) if told else planes[0]
+    known = [plane for plane in planes if not np.isnan(plane.value).all()]
+    return (max if planes[0].quantity.more_is_better else min)(known, key=_best_value) if known else planes[0]
 
 
 def relief(planes: Sequence[Plane]) -> float:

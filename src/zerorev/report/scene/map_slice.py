@@ -43,7 +43,7 @@ WHY_COLOURS = {
     "none": "#b8b8b8", "joint_limits": "#8f8f8f", "out_of_reach": "#5c5c5c", "robot_base": "#303030",
     "not_yet": "#e4e4e4",
 }  # fmt: skip
-WHY_WORDS = {**WORDS, "not_yet": "not yet looked at"}
+WHY_WORDS = {**WORDS, "not_yet": "not yet examined"}
 NOT_YET = -1  # the status of a cell that the map has not come to
 
 Cut = Literal["x", "y", "z", "drill"]  # the axis that a plane stands across
@@ -75,7 +75,7 @@ class MapSlice:
         drill: unit vector into the material, shape (3,).
         position: targets [m], base frame, shape (N, 3).
         value: in the unit of the quantity, NaN where there is no answer, shape (N,).
-        status: what became of each cell, by its number in `zerorev.maps.cells.STATUS`; -1: not looked at, shape (N,).
+        status: what became of each cell, by its number in `zerorev.maps.cells.STATUS`; -1: not examined, shape (N,).
         row: the number of each target in the map, shape (N,).
         edges: the two edges of a cell [m], shape (2, 3).
     """
@@ -139,23 +139,23 @@ class MapSlice:
     @cached_property
     def colours(self) -> tuple[str, ...]:
         """Of each cell, as #rrggbb: the colours of the figures."""
-        told = np.isfinite(self.value)
-        shown = iter(self._colours(self.value[told]))
-        each = zip(told, self.status.tolist(), strict=True)
+        known = np.isfinite(self.value)
+        shown = iter(self._colours(self.value[known]))
+        each = zip(known, self.status.tolist(), strict=True)
         return tuple(next(shown) if there else WHY_COLOURS[_why(status)] for there, status in each)
 
     @cached_property
     def legend(self) -> tuple[Key, ...]:
         """Values and what they look like, the least first; then why cells have none, of those there are."""
-        told = self.value[np.isfinite(self.value)]
+        known = self.value[np.isfinite(self.value)]
         keys: list[Key] = []
         if self.quantity.variable == "reversals":
-            counts = np.unique(np.minimum(told, 6.0))
+            counts = np.unique(np.minimum(known, 6.0))
             words = [f"{count:.0f}{'+' if count == 6 else ''} reversal{'' if count == 1 else 's'}" for count in counts]
             keys += map(Key, self._colours(counts), words)
-        elif told.size:
-            low = 0.0 if self.quantity.more_is_better else float(told.min())
-            values = np.linspace(low, float(told.max()), KEYS)
+        elif known.size:
+            low = 0.0 if self.quantity.more_is_better else float(known.min())
+            values = np.linspace(low, float(known.max()), KEYS)
             keys += map(Key, self._colours(values), map(self.quantity.shown, values.tolist()))
         lacking = np.bincount(self.status[np.isnan(self.value)] + 1, minlength=len(STATUS) + 1)
         for number, count in enumerate(lacking.tolist(), NOT_YET):
@@ -181,11 +181,11 @@ def slice_of(found: Dataset, direction: int = 0, across: Across | None = None, a
         found: a workspace map, also one that is not finished.
         direction: which of its directions, from 0.
         across: the axis that the plane stands across; None: the only one across which there is a single plane, or else
-            the one that the direction is nearest to. Not looked at for points.
+            the one that the direction is nearest to. Not examined for points.
         at: which of those planes, from 0; None: the one with the best cell.
 
     Raises:
-        InputError: no such direction or plane, a dataset that is no workspace map, or more cells than can be shown.
+        InputError: no such direction or plane, a dataset that is not a workspace map, or more cells than can be shown.
     """
     cells = cells_of(found)
     if not 0 <= direction < len(cells.direction):

@@ -41,7 +41,7 @@ ALONG_X = np.array([[1.0, 0.0, 0.0]])
 PLANES_MM = (-100.0, 0.0, 100.0, 200.0, 300.0, 400.0, 500.0, 600.0)  # Figures 21 to 24
 ODD_MM = 100.0  # sec. 4.6: the plane that is "exceedingly discontinuous and sparse"
 SPACING_MM = 50.0
-SPINS = 360  # over one turn, at which the lever of joint 1 is looked at
+SPINS = 360  # over one turn, at which the lever of joint 1 is examined
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _results(plane: _Plane, apart: Difference) -> list[Result]:
     short = gain < -DECREMENT_MM
     less = np.flatnonzero(short)
     below = "; ".join(f"{_where(plane.thesis.target[n])}: {-gain[n]:.1f} mm less" for n in less)
-    told = f"Less than the thesis by more than its step in {less.size} cells ({below})." if less.size else (
+    words = f"Less than the thesis by more than its step in {less.size} cells ({below})." if less.size else (
         "No cell has less than the thesis by more than its step."
     )  # fmt: skip
     symmetry = [_greatest(mirror_in_y(field)) for field in (plane.thesis, plane.bounded, plane.periodic)]
@@ -142,7 +142,7 @@ def _results(plane: _Plane, apart: Difference) -> list[Result]:
             f"at least the printed depth less {DECREMENT_MM:g} mm in {int((~short).sum())} of 81 cells,"
             f" {np.median(gain[asked]):+.1f} mm in the median, {gain.max():+.1f} mm at most; {int(new.sum())} cells"
             " more have a stroke",
-            f"{told} With |ψ| ≤ 180° the median gain is {bounded:+.1f} mm: so much a swarm that steps down overlooks;"
+            f"{words} With |ψ| ≤ 180° the median gain is {bounded:+.1f} mm: so much a swarm that steps down overlooks;"
             " the rest is the wall at ±180°, which a periodic spin does not have.",
         ),
         Result(

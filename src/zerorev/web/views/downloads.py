@@ -66,7 +66,7 @@ def _entry(text: str, name: str, wish: Callable[[], None]) -> None:
 
 
 def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
-    """Make something of all holes; where some have no answer, only once the user has been told so and agrees."""
+    """Make something of all holes; where some have no answer, only once the user has been asked and agrees."""
     plan = plan_of(session.state)
     missing = [finding for finding in plan.findings if finding.kind == UNFINISHED]
     if not missing:

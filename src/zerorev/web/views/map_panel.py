@@ -150,7 +150,7 @@ def _task(state: State, form: _Form) -> MapTask:
 def _length(name: str, value: Any) -> float:
     """A length [m] out of a field in mm."""
     if not isinstance(value, int | float) or not math.isfinite(value):
-        raise InputError("is no number", where=name, accepted="a length in mm")
+        raise InputError("is not a number", where=name, accepted="a length in mm")
     return value / 1e3
 
 
