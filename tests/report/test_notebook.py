@@ -15,6 +15,7 @@ from PIL import Image
 
 from zerorev.model import shown
 from zerorev.model.plan import Finding, HolePlan
+from zerorev.report.figures.spin import spin_profile
 from zerorev.report.notebook import ROWS
 
 TAGS = {"div", "p", "b", "table", "thead", "tbody", "tr", "th", "td", "br", "pre", "img"}
@@ -117,10 +118,25 @@ def test_depths_say_so(published):
     assert "depths of 4 holes" in _Read(replace(published, strokes="deepest")._repr_html_()).text
 
 
-def test_one_hole_shows_itself_without_a_picture(published):
+def test_one_hole_shows_its_spin(published):
     read = _Read(published.holes[0]._repr_html_())
     assert [row[0] for row in read.rows] == ["hole", "position 1"]
-    assert "img" not in read.tags
+    assert ("alt", "Spin of hole position 1 along the motion") in read.attributes
+    assert "img" not in _Read(published.holes[3]._repr_html_()).tags
+
+
+def test_the_spin_is_the_planned_one_with_its_reversals(make_plan):
+    # the five-point motion turns A6 round twice within the plunge
+    hole = make_plan((50, 20, 0, 30, 50), (14, 4, -5.9, -15, -30)).holes[0]
+    figure = spin_profile(hole)
+    lines = {line.get_label(): line for line in figure.axes[0].lines}
+    np.testing.assert_allclose(lines["planned"].get_data(), [(0, 30, 50, 80, 100), (14, 4, -5.9, -15, -30)])
+    x, y = lines["reversals"].get_data()
+    expected = [50 - 1e3 * e.standoff if e.leg == "plunge" else 50 + 1e3 * e.standoff for e in hole.score.events]
+    np.testing.assert_allclose(x, expected, atol=1e-9)
+    assert len(x) == hole.score.reversals > 0
+    assert np.all((y >= -30) & (y <= 14))
+    assert "reversal of joint" in figure.legends[0].get_texts()[-1].get_text()
 
 
 def test_a_model_alone_shows_nothing(monkeypatch, published):

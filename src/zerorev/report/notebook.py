@@ -31,19 +31,19 @@ PICTURE = "max-width: 100%; width: 800px; background: white"
 def html_of(answer: Plan | HolePlan) -> str:
     """The HTML of a plan (or of depths) or of one hole of it.
 
-    A hole alone does not know its robot, so that its joints cannot be drawn: it has no picture.
+    A plan shows the joints of its first hole. A hole alone does not know its robot: it shows its spin.
 
     Args:
         answer: a plan, of which the first holes are shown, or the plan of a hole.
     """
     if isinstance(answer, HolePlan):
-        return _div(_table([answer], np.eye(4)), _findings(hole_findings(answer)))
+        return _div(_table([answer], np.eye(4)), _findings(hole_findings(answer)), _spin(answer))
     found = [*answer.findings, *(finding for hole in answer.holes for finding in hole_findings(hole))]
     robot = f"{answer.robot.manufacturer} {answer.robot.model}".strip() or answer.robot.name
     kind = "plan" if answer.strokes == "asked" else "depths"
     count = f"{len(answer.holes):,} hole{'' if len(answer.holes) == 1 else 's'}"
     heading = f"<p><b>{_text(answer.name)}</b>: {kind} of {count}, {_text(robot)}, {_text(answer.tool.name)}</p>"
-    return _div(heading, _table(answer.holes, answer.T_base_part), _findings(found), _picture(answer))
+    return _div(heading, _table(answer.holes, answer.T_base_part), _findings(found), _joints(answer))
 
 
 def _table(holes: Sequence[HolePlan], T_base_part: Array) -> str:
@@ -72,7 +72,7 @@ def _findings(found: Iterable[Finding]) -> str:
     return f'<pre style="white-space: pre-wrap; {LEFT}">{lines}</pre>' if lines else ""
 
 
-def _picture(plan: Plan) -> str:
+def _joints(plan: Plan) -> str:
     """The joints of the first hole that has a motion, where matplotlib is there to draw them."""
     first = next((hole for hole in plan.holes if hole.motion is not None), None)
     if first is None or find_spec("matplotlib") is None:
@@ -80,9 +80,22 @@ def _picture(plan: Plan) -> str:
     from zerorev.report.figures.joints import joint_angles
     from zerorev.report.figures.style import png
 
-    data = base64.b64encode(png(joint_angles(plan, first))).decode("ascii")
-    alt = _text(f"Joint angles of hole {first.hole.id} along the motion")
-    return f'<img src="data:image/png;base64,{data}" alt="{alt}" style="{PICTURE}">'
+    return _image(png(joint_angles(plan, first)), f"Joint angles of hole {first.hole.id} along the motion")
+
+
+def _spin(hole: HolePlan) -> str:
+    """The spin of a hole that has a motion, likewise."""
+    if hole.motion is None or find_spec("matplotlib") is None:
+        return ""
+    from zerorev.report.figures.spin import spin_profile
+    from zerorev.report.figures.style import png
+
+    return _image(png(spin_profile(hole)), f"Spin of hole {hole.hole.id} along the motion")
+
+
+def _image(picture: bytes, words: str) -> str:
+    data = base64.b64encode(picture).decode("ascii")
+    return f'<img src="data:image/png;base64,{data}" alt="{_text(words)}" style="{PICTURE}">'
 
 
 def _div(*parts: str) -> str:

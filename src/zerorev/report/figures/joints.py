@@ -18,7 +18,7 @@ from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
 from zerorev.report.scene.joint_range import joint_range
 
-__all__ = ["joint_angles"]
+__all__ = ["REVERSAL", "joint_angles", "path_distance"]
 
 SAMPLES = 600
 REVERSAL = {"marker": "X", "markersize": 8.0, "markeredgecolor": "white", "markeredgewidth": 0.9, "linestyle": "none"}
@@ -90,7 +90,7 @@ def _angles(plan: Plan, hole: HolePlan, motion: Motion, profile: Profile) -> tup
     return distance * 1e3, np.rad2deg(joints + turns)
 
 
-def _path_distance(profile: Profile, event: Event) -> float:
+def path_distance(profile: Profile, event: Event) -> float:
     """Where on the path an event lies [mm]."""
     corner = profile.standoff[profile.corner]
     to_corner = float(profile.standoff[0] - corner)
@@ -108,7 +108,7 @@ def _one_joint(axes: Axes, plan: Plan, profile: Profile, i: int, planned: Curve,
               linestyle=(0, (4, 2)), zorder=2, label=f"{name} baseline")  # fmt: skip
     axes.plot(planned.distance, planned.joints[:, i], color=colour, linewidth=2.2, zorder=3, label=f"{name} planned")
     for curve, ink in ((baseline, style.BASELINE_COLOUR), (planned, colour)):
-        at = [_path_distance(profile, event) for event in curve.reversals(i + 1)]
+        at = [path_distance(profile, event) for event in curve.reversals(i + 1)]
         if at:
             axes.plot(at, np.interp(at, curve.distance, curve.joints[:, i]), color=ink, zorder=4,
                       label=f"{name} reversals", **REVERSAL)  # type: ignore[arg-type] # fmt: skip

@@ -51,6 +51,7 @@ __all__ = [
     "headed_figure",
     "hole_heading",
     "hole_of",
+    "hole_words",
     "label",
     "legend_below",
     "motion_of",
@@ -171,11 +172,16 @@ def one_axes(
 def hole_heading(plan: Plan, hole: HolePlan) -> str:
     """Robot, hole, branch and reversals, in a line."""
     robot = f"{plan.robot.manufacturer} {plan.robot.model}".strip() or plan.robot.name
+    return f"{robot}   |   {hole_words(hole)}"
+
+
+def hole_words(hole: HolePlan) -> str:
+    """Hole, branch and reversals, in a line."""
     name = hole.hole.id if len(hole.hole.id) <= TITLE_LENGTH else f"{hole.hole.id[: TITLE_LENGTH - 1]}…"
     reversals = "?" if hole.score is None else str(hole.score.reversals)
     if hole.baseline is not None:
         reversals = f"{hole.baseline.reversals} at constant spin, {reversals} here"
-    return f"{robot}   |   hole {name}   |   branch {motion_of(hole).branch}   |   reversals: {reversals}"
+    return f"hole {name}   |   branch {motion_of(hole).branch}   |   reversals: {reversals}"
 
 
 def bare_axes(axes: Axes) -> None:
