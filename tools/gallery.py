@@ -98,7 +98,7 @@ def _map(legs: str = "straight", tilts: tuple[float, ...] = (0.0,), x: tuple[flo
     from tempfile import TemporaryDirectory
 
     from zerorev.files.map_file import read_map_file
-    from zerorev.maps.run import local, run_map
+    from zerorev.maps.run import run_map
     from zerorev.maps.workspace import read_workspace_map
 
     ways = [[1.0, 0.0, 0.0]]
@@ -113,7 +113,7 @@ def _map(legs: str = "straight", tilts: tuple[float, ...] = (0.0,), x: tuple[flo
             f"  z_mm: {{start: 400, stop: 1200, step: 100}}\n"
             f"directions: {np.array(ways).round(6).tolist()}\n"
         )
-        run_map(read_map_file(file), store, local(1))
+        run_map(read_map_file(file), store)
         return read_workspace_map(store)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 import numpy as np
+import pytest
 from PIL import Image
 from tools import gallery
 
@@ -34,3 +35,23 @@ def test_every_figure_is_explained_on_the_built_page(site):
     assert [name for name in figures.__all__ if f'id="zerorev.figures.{name}"' not in built] == []
     explained = re.findall(r"to draw (?:the strokes at one angle )?into", built)
     assert len(explained) == 7  # the argument of those that have one axes
+
+
+QUICK = {
+    "joint_angles",
+    "twist_plane",
+    "critical_rates",
+    "map_planes",
+    "map_surface",
+    "map_views",
+    "map_cell",
+    "zero_volume",
+}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.long if name in QUICK else pytest.mark.soak) for name in gallery.DRAWN],
+)
+def test_every_picture_can_be_drawn_again(name):
+    assert any(axes.has_data() for axes in gallery.DRAWN[name]().axes)
