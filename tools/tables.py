@@ -1,4 +1,4 @@
-"""The tables of the documentation that are made from what is stated once: the settings of a job, and the criteria.
+"""The tables of the documentation that are made from the code: settings, criteria, and the rooms of the house.
 
 A page has a table between two marks, `<!-- settings: made by make reference -->` and `<!-- end of settings -->`.
 `python tools/tables.py` rewrites them; a test fails where one is out of date.
@@ -6,7 +6,9 @@ A page has a table between two marks, `<!-- settings: made by make reference -->
 
 from __future__ import annotations
 
+import ast
 import re
+import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -15,7 +17,8 @@ from zerorev.model.measures import CRITERIA
 from zerorev.model.settings import Settings
 from zerorev.model.stated import Choice, Stated, Weighed, stated
 
-PAGES = Path(__file__).parents[1] / "docs"
+ROOT = Path(__file__).parents[1]
+PAGES, HOUSE = ROOT / "docs", ROOT / "src" / "zerorev"
 
 
 def settings_table() -> str:
@@ -56,7 +59,45 @@ def criteria_table() -> str:
     return _table(("criterion", "cost", "figure in a plan file"), rows)
 
 
-TABLES: dict[str, Callable[[], str]] = {"settings": settings_table, "criteria": criteria_table}
+def rooms_table() -> str:
+    """What each room is about and what is in it, in the order of the layers that import-linter checks."""
+    return _table(("room", "what it is", "in it"), _rooms())
+
+
+def _rooms() -> Iterator[tuple[str, ...]]:
+    (layers,) = (
+        contract["layers"]
+        for contract in tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
+            "contracts"
+        ]
+        if contract["type"] == "layers"
+    )
+    for name in (each.strip() for layer in layers for each in layer.split("|")):
+        if not name.startswith("("):  # the place of a room that is to come
+            yield f"`{name}`", _sentence(name), _inside(HOUSE / name)
+
+
+def _sentence(room: str) -> str:
+    """The first sentence of a room's docstring."""
+    path = HOUSE / room / "__init__.py" if (HOUSE / room).is_dir() else HOUSE / f"{room}.py"
+    words = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    return words.partition("\n\n")[0].replace("\n", " ")
+
+
+def _inside(folder: Path) -> str:
+    """Names of the modules and folders of a room, those for itself left out."""
+    if not folder.is_dir():
+        return ""
+    paths = (path for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").exists())
+    names = sorted(path.stem for path in paths if not path.name.startswith("__"))
+    return ", ".join(f"`{name}`" for name in names)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "settings": settings_table,
+    "criteria": criteria_table,
+    "rooms": rooms_table,
+}
 
 
 def with_tables(text: str) -> str:
