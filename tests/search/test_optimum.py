@@ -193,7 +193,7 @@ class TestCut:
         drilled = replace(drilled, robot=unlimited)
         deepest = deepest_stroke(*drilled.all)
         branch = 2 * (deepest.branch // 2) + flip
-        order = Order(*drilled.deep(0.6 * deepest.depth).asking(objective="margin").all)
+        order = Order(*drilled.deep(0.6 * deepest.depth).asking(objective="margin").both)
         slopes = deepest.profile.twist_rate
         straight = order.candidate(cut_short(deepest.profile, order.drilling.hole.depth), branch)
         found = steadied(order, branch, float(deepest.profile.psi[1]), slopes, 0.0)
