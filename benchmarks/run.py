@@ -83,7 +83,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--seeds", type=int, default=Options.seeds, help="of each random peer at each position")
     parser.add_argument("--holes", type=int, default=Options.holes, help="at random places")
     parser.add_argument("--peer-seeds", type=int, default=Options.peer_seeds, help="of each random peer at each hole")
-    parser.add_argument("--workers", type=int, help="processes that the holes are shared out over; one a core")
+    parser.add_argument("--workers", type=int, help="processes that the holes are shared out over; one per core")
     parser.add_argument("--cells", type=int, default=Options.cells, help="of the great map; 1,000,000 is all of it")
     parser.add_argument(
         "--old", type=Path, help="a git worktree of an older commit, measured beside in `plan`, `panel`"

@@ -78,7 +78,7 @@ def environment(checkout: Path) -> dict[str, str]:
 
 
 def _serve() -> None:
-    """Answer jobs, one a line, until there are no more."""
+    """Answer jobs, one per line, until there are no more."""
     import zerorev
     from zerorev.files.io import job_from_dict
     from zerorev.files.schema import JobFile

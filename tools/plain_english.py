@@ -8,19 +8,16 @@ the mark "plain English: quoted".
 
 from __future__ import annotations
 
-import io
 import re
 import subprocess
 import sys
-import tokenize
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 WORDS = Path(__file__).with_suffix(".txt")
 READ = {".py", ".md", ".js", ".css", ".html", ".yaml", ".yml", ".toml", ".cff"}
-UNREAD = ("tests/golden/", "tests/data/", str(Path(__file__).relative_to(ROOT)))
+UNREAD = ("tests/golden/", "tests/data/", "tests/test_plain_english.py", "tools/plain_english.py")
 QUOTED = "plain English: quoted"
 BEGIN = r"(?:(?<![a-z])|(?<=\\n))"  # not within a word; the n of an escaped line feed is none of it
 GAP = r"(?:_|\s+(?:#:?\s+|//\s+|\*\s+)?)"  # between two words of a phrase: also from a line to the next
@@ -38,49 +35,40 @@ class Word(NamedTuple):
     instead: str
 
 
-def words(listed: str) -> tuple[list[Word], list[Word]]:
-    """Of a list of words: those of any text, and those that must not be a whole name of Python."""
-    text: list[Word] = []
-    names: list[Word] = []
-    into = text
+def words(listed: str) -> list[Word]:
+    """The words of a list, in its order."""
+    found = []
     for line in listed.splitlines():
-        if line == "[names]":
-            into = names
-        elif line and not line.startswith("#"):
+        if line and not line.startswith("#"):
             pattern, instead = line.split(" -> ")
-            gap = "_" if into is names else GAP
-            form = rf"{BEGIN}(?:{pattern.replace(' ', gap)})(?![a-z])"
-            into.append(Word(re.compile(form, re.IGNORECASE), instead))
-    return text, names
+            form = rf"{BEGIN}(?:{pattern.replace(' ', GAP)})(?![a-z])"
+            found.append(Word(re.compile(form, re.IGNORECASE), instead))
+    return found
 
 
-def findings(text: str, code: bool, listed: tuple[list[Word], list[Word]]) -> Iterator[tuple[int, str, str]]:
-    """Line, words and what to write instead, of each place in a text that is not plain; `code`: it is Python."""
+def findings(text: str, listed: list[Word]) -> list[tuple[int, str, str]]:
+    """Line, words and what to write instead, of each place in a text that is not plain."""
     lines = text.splitlines()
-    for word in listed[0]:
-        for found in word.pattern.finditer(text):
-            line = text.count("\n", 0, found.start())
+    found = []
+    for word in listed:
+        for place in word.pattern.finditer(text):
+            line = text.count("\n", 0, place.start())
             if QUOTED not in lines[line]:
-                yield line + 1, " ".join(found.group().split()), word.instead
-    if code:
-        for token in tokenize.generate_tokens(io.StringIO(text).readline):
-            for word in listed[1]:
-                if token.type == tokenize.NAME and word.pattern.fullmatch(token.string) and QUOTED not in token.line:
-                    yield token.start[0], token.string, word.instead
+                found.append((line + 1, " ".join(place.group().split()), word.instead))
+    return sorted(found)
 
 
 def main(paths: list[str]) -> int:
     """Print what is not plain in some files, or in all that are under version control; 1 if there is any."""
     listed = words(WORDS.read_text(encoding="utf-8"))
     if not paths:
-        told = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
-        paths = subprocess.run(told, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+        command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+        paths = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
     count = 0
     for path in map(Path, paths):
         if path.suffix not in READ or path.as_posix().startswith(UNREAD) or not (ROOT / path).is_file():
             continue
-        text = (ROOT / path).read_text(encoding="utf-8")
-        for line, found, instead in sorted(findings(text, path.suffix == ".py", listed)):
+        for line, found, instead in findings((ROOT / path).read_text(encoding="utf-8"), listed):
             count += 1
             sys.stdout.write(f'{path}:{line}: "{found}": write {instead}\n')
     return min(count, 1)

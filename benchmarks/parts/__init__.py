@@ -17,7 +17,7 @@ class Options:
         rounds: of what is timed and not random.
         holes: at random places.
         peer_seeds: of each random peer at each of those.
-        workers: processes that those are shared out over; None: one a core.
+        workers: processes that those are shared out over; None: one per core.
         poses: in a batch.
         jobs: numbers of holes of whole jobs.
         cells: of the great map, of a million at most; those of the other maps go by it.

@@ -1,4 +1,4 @@
-"""Whole jobs through the command line: time a hole and memory as the number of holes grows, on one core and on two."""
+"""Whole jobs through the command line: time per hole and memory as the number of holes grows, on one core and two."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def run(options: Options) -> Section:
     return Section(
         name="job",
         title="Jobs of many holes",
-        columns=("holes", "workers", "time a hole, by the clock", "most memory of a process"),
+        columns=("holes", "workers", "time per hole, by the clock", "most memory of a process"),
         rows=rows,
         notes=[
             "`zerorev plan JOB -o PLAN --workers N` on a square panel, each hole searched and checked, and its margin"
@@ -67,7 +67,7 @@ def run(options: Options) -> Section:
         ],
         goals=[
             Goal(
-                "a job of many holes: time a hole as the number grows, two workers",
+                "a job of many holes: time per hole as the number grows, two workers",
                 "",
                 "flat",
                 " / ".join(f"{duration(each)} ({size:,})" for each, size in zip(per_hole, options.jobs, strict=False)),

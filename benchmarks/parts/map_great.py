@@ -1,4 +1,4 @@
-"""The great map, through the command line: time a cell, memory and disk as the map grows towards a million cells."""
+"""The great map, through the command line: time per cell, memory and disk as the map grows towards a million cells."""
 
 from __future__ import annotations
 

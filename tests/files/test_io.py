@@ -237,7 +237,7 @@ def test_of_many_problems_the_first_few_are_listed(tmp_path: Path) -> None:
         (CSV.replace(",depth_mm", ""), ["line 1", "no column depth_mm", "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"]),
         (CSV.replace(",", ";"), ["line 1", "no column id", "separated by commas"]),
         (CSV.replace("depth_mm", "depth_mm,note,colour"), ["line 1", "unknown column 'note', 'colour'"]),
-        (CSV.replace("depth_mm", "depth_mm,id"), ["line 1", "a column stands twice"]),
+        (CSV.replace("depth_mm", "depth_mm,id"), ["line 1", "a column appears twice"]),
         (CSV.replace("40.5", "deep"), ["line 3, column depth_mm", "'deep' is not a finite number", "12.5"]),
         (CSV.replace("40.5", "nan"), ["line 3, column depth_mm", "'nan' is not a finite number"]),
         (CSV.replace("40.5", "inf"), ["line 3, column depth_mm", "'inf' is not a finite number"]),

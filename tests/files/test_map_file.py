@@ -89,7 +89,7 @@ TARGETS = PLANE["targets"]
         ({"targets": None, "points": "none.csv"}, "no such file"),
         ({"targets": TARGETS | {"x_mm": []}}, "targets.x_mm: has 0 entries"),
         ({"targets": TARGETS | {"x_mm": 500}}, "targets.x_mm"),
-        ({"targets": TARGETS | {"x_mm": [500, 500]}}, "a value stands twice"),
+        ({"targets": TARGETS | {"x_mm": [500, 500]}}, "a value appears twice"),
         ({"targets": TARGETS | {"z_mm": {"start": 900, "stop": 400, "step": 100}}}, "so the box is empty"),
         ({"targets": TARGETS | {"z_mm": {"start": 400, "stop": 900, "step": 0}}}, "targets.z_mm.step: 0 is too small"),
         ({"targets": TARGETS | {"z_mm": {"start": 400, "stop": 900, "step": -5}}}, "above 0 [mm]"),

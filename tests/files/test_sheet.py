@@ -91,7 +91,7 @@ def test_an_id_keeps_its_comma(tool):
         (HEADER, "no rows"),
         ("name;x;y\nA;1;2", "unknown column 'name', 'x', 'y'"),
         ("id,x_mm\nA,1", "no column y_mm"),
-        (f"{HEADER},id\n{','.join(ROW)},A", "stands twice"),
+        (f"{HEADER},id\n{','.join(ROW)},A", "appears twice"),
         ("\n".join([",".join(ROW)] * (MAX_ROWS + 1)), "20,000 at most"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Runs that are killed, asked to end, or interrupted, at random moments: the same command goes on, to the same bytes.
+"""Runs that are killed, asked to end, or interrupted, at random moments: the same command resumes, to the same bytes.
 
 And nothing that they started is left a second later.
 """

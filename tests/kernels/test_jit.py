@@ -203,9 +203,9 @@ def _hiding(code: str, folder: Path, **environment: str) -> str:
 def test_where_a_private_part_of_numba_is_missing_its_own_cache_serves(tmp_path: Path):
     with_all, *without = _hiding(EACH_PART, tmp_path).splitlines()
     assert with_all == "False"
-    told = dict(line.split() for line in without)
-    assert len(told) == 7
-    assert set(told.values()) == {"True"}
+    said = dict(line.split() for line in without)
+    assert len(said) == 7
+    assert set(said.values()) == {"True"}
 
 
 @compiled

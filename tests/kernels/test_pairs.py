@@ -139,22 +139,22 @@ class TestBestPair:
         assert out[pairs.MARGIN] == -np.inf
 
 
-def look(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=EVERY_BRANCH, enough=-np.inf):
+def sample_line(robot, plane, psi, wanted, *, keep=ALL_JOINTS, mode=legs.TRAVEL, branches=EVERY_BRANCH, enough=-np.inf):
     """Value, margin and guess at every spin, shapes (4, K)."""
-    out = np.empty((4, psi.size, pairs.LOOKED))
+    out = np.empty((4, psi.size, pairs.SAMPLED))
     lines = np.repeat(branches[:, None], psi.size, axis=1)
-    pairs.look(robot.arm, plane, psi, lines, keep, wanted, mode, enough, out)
+    pairs.sample_line(robot.arm, plane, psi, lines, keep, wanted, mode, enough, out)
     return np.moveaxis(out[..., :3], -1, 0)
 
 
-class TestLook:
+class TestSampleLine:
     def test_guesses_the_value_and_the_margin(self):
         """The value to within 5 %; a pair that lies between the slopes that are examined may be missed."""
         guessed = missed = 0
         for start, _ in promising(1 if SLOW else 6, seed=18, robots=ROBOTS[:: 2 if SLOW else 1]):
             wanted, posture = wide(start), start.branch // 2
             psi = start.psi_t + np.linspace(-0.1, 0.1, 3 if SLOW else 9)
-            value, margin, _ = look(start.robot, start.plane, psi, wanted)
+            value, margin, _ = sample_line(start.robot, start.plane, psi, wanted)
             for n, spin in enumerate(psi):
                 at = Start(start.robot, start.hole, start.branch, spin, 0.0)
                 least = best_pair(at, wanted)[pairs.VALUE]
@@ -172,7 +172,9 @@ class TestLook:
         compared = 0
         for start, _ in promising(1 if SLOW else 4, seed=19, robots=ROBOTS[:: 4 if SLOW else 1]):
             wanted, psi = wide(start), np.array([start.psi_t])
-            value = look(start.robot, start.plane, psi, wanted, mode=legs.PLUNGE_ROTATION)[0][start.branch // 2, 0]
+            value = sample_line(start.robot, start.plane, psi, wanted, mode=legs.PLUNGE_ROTATION)[0][
+                start.branch // 2, 0
+            ]
             least = best_pair(start, wanted, mode=legs.PLUNGE_ROTATION)[pairs.VALUE]
             if np.isfinite(value):
                 assert abs(value - least) <= 0.05 * abs(least) + 0.02 * wanted.steepest
@@ -184,10 +186,10 @@ class TestLook:
         for start in starts(1 if SLOW else 40, seed=20, robots=ROBOTS[:: 4 if SLOW else 1], deepest=0.03):
             psi, posture = np.array([start.psi_t]), start.branch // 2
             wanted, both = asked(start.robot, start.hole), np.arange(8) // 2 == posture
-            _, margin, _ = look(start.robot, start.plane, psi, wanted, branches=both)
+            _, margin, _ = sample_line(start.robot, start.plane, psi, wanted, branches=both)
             greatest = least_of_greatest(start, wanted, within=True)
             assert margin[posture, 0] >= greatest - 1e-9
-            _, without, _ = look(start.robot, start.plane, psi, wide(start), branches=both)
+            _, without, _ = sample_line(start.robot, start.plane, psi, wide(start), branches=both)
             pruned += greatest <= margin[posture, 0] < without[posture, 0] - 1e-6
             kept += greatest > -np.inf
         assert pruned >= (0 if SLOW else 20)
@@ -197,8 +199,8 @@ class TestLook:
         plane = Start(robot, positions[0].hole, 4, 0.0, 0.0).plane
         psi = np.linspace(-0.2, 0.2, 3)
         wanted = asked(robot, positions[0].hole)
-        whole = np.array(look(robot, plane, psi, wanted))
-        alone = np.array(look(robot, plane, psi, wanted, branches=np.arange(8) == 4))
+        whole = np.array(sample_line(robot, plane, psi, wanted))
+        alone = np.array(sample_line(robot, plane, psi, wanted, branches=np.arange(8) == 4))
         assert np.isfinite(alone[:, 2]).all()
         assert (alone[0, [0, 1, 3]] == np.inf).all()
         assert (alone[1, [0, 1, 3]] == -np.inf).all()
@@ -208,9 +210,9 @@ class TestLook:
         plane = Start(robot, positions[0].hole, 4, 0.0, 0.0).plane
         psi = np.linspace(-3, 3, 12 if SLOW else 60)
         wanted = asked(robot, positions[0].hole)
-        whole = np.array(look(robot, plane, psi, wanted))
+        whole = np.array(sample_line(robot, plane, psi, wanted))
         enough = np.median(whole[1][np.isfinite(whole[1])])
-        left = np.array(look(robot, plane, psi, wanted, enough=enough))
+        left = np.array(sample_line(robot, plane, psi, wanted, enough=enough))
         more = whole[1] > enough
         assert 0 < more.sum() < np.isfinite(whole[1]).sum()
         np.testing.assert_array_equal(left[:, more], whole[:, more])

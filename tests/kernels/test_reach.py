@@ -18,7 +18,7 @@ from zerorev.search.viable import Grain, Tubes
 
 SLOW = bool(numba.config.DISABLE_JIT)
 CAP, LEAST = np.deg2rad(5e3), np.deg2rad(1e-4)
-SHARES = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, polyline.LOOKS))
+SHARES = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, polyline.SAMPLES))
 # target [mm], posture, spins at the target [deg] among which the deepest is
 PLACES = [
     ((200, 200, 1000), 3, (15.0, 35.0)),

@@ -43,7 +43,7 @@ def go(robot, tool):
 
     def better(legs, goal="depth", branch=BRANCH, **rules):
         held = Constraints(**({"lower": -NO_LIMIT, "upper": NO_LIMIT, "min_rate": LEAST} | rules))
-        return improved(robot.arm, plane, branch, sense, held, legs, goal, looks=5 if SLOW else 17, enough=1e-7)
+        return improved(robot.arm, plane, branch, sense, held, legs, goal, samples=5 if SLOW else 17, enough=1e-7)
 
     better.margin = lambda legs: dense_margin(robot, plane, sense, legs)
     return better

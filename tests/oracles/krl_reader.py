@@ -54,7 +54,7 @@ class KrlProgram:
     statements: list[str] = field(default_factory=list)  # in order, without comments
 
     def holes(self) -> list[list[Move]]:
-        """The motions, one list a hole: each begins with its PTP."""
+        """The motions, one list per hole: each begins with its PTP."""
         holes: list[list[Move]] = []
         for move in self.moves:
             if move.kind == "PTP":

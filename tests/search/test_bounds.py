@@ -27,34 +27,34 @@ BUDGET = 100_000
 THESIS = (([0.5, 0.3, 0.8], 0.05), ([0.2, 0.4, 0.6], 0.02), ([0.2, 0.2, 1.0], 0.03))
 
 
-def rules_of(drilled, *, min_rate, most_cost=80.0, looks=8):
+def rules_of(drilled, *, min_rate, most_cost=80.0, samples=8):
     robot, _, hole, settings = drilled.all
     lower, upper = model_limits(robot)
     weights = np.array(settings.reversal_weights)
     bound = settings.psi_bound or 0.0
     return BoundRules(
-        hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), looks
+        hole.depth, min_rate, bound, lower, upper, np.ones(2, bool), weights, most_cost, weights.min(), samples
     )
 
 
-def looks_at(looks):
-    return np.array([kernels.share(looks, 0, look) for look in range(looks)])
+def sampled_at(samples):
+    return np.array([kernels.share(samples, 0, sample) for sample in range(samples)])
 
 
-def no_terms(looks):
-    return np.zeros((MOST_TERMS, TERM)), 1.0, looks_at(looks)
+def no_terms(samples):
+    return np.zeros((MOST_TERMS, TERM)), 1.0, sampled_at(samples)
 
 
-def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, looks=8):
+def examined(drilled, posture, psi, slopes, *, min_rate, groups=1, samples=8):
     """What is known of one box, and its row; None where no leg of it may exist."""
     robot, tool, hole, _ = drilled.all
-    rules = rules_of(drilled, min_rate=min_rate, looks=looks)
+    rules = rules_of(drilled, min_rate=min_rate, samples=samples)
     tree = Search(robot.arm, Drilling(robot, tool, hole).plane, rules, [posture], 1.0, 0.0)
     legs, known, _, _, room, _ = _room()
     legs[0, kernels.LOW], legs[0, kernels.HIGH] = slopes
     model = tree.models[posture]
     left, _ = bound_legs.examine(
-        model, rules, no_terms(looks), np.array(psi), legs, known, 1, groups, np.zeros(0), room
+        model, rules, no_terms(samples), np.array(psi), legs, known, 1, groups, np.zeros(0), room
     )
     return (legs[0], known[0]) if left else None
 
@@ -72,8 +72,9 @@ def check_a_box(rng, drilled):
     """Legs drawn from a box against what is said of it; how many legs could be run."""
     posture = int(rng.integers(4))
     psi, slopes = random_box(rng, drilled)
-    min_rate, looks = float(rng.choice([0.0, np.deg2rad(10.0)])), int(rng.choice([4, 8]))
-    said = examined(drilled, posture, psi, slopes, min_rate=min_rate, groups=int(rng.choice([1, 2, 4])), looks=looks)
+    min_rate, samples = float(rng.choice([0.0, np.deg2rad(10.0)])), int(rng.choice([4, 8]))
+    groups = int(rng.choice([1, 2, 4]))
+    said = examined(drilled, posture, psi, slopes, min_rate=min_rate, groups=groups, samples=samples)
     legs = []
     for _ in range(6):
         psi_t, slope = rng.choice([*psi, rng.uniform(*psi)]), rng.choice([*slopes, rng.uniform(*slopes)])
@@ -110,24 +111,24 @@ def check_weights(rng, drilled):
     """The travel less weighted conditions, of legs drawn from a box, against its bound; how many legs could be run."""
     robot, tool, hole, _ = drilled.all
     psi, slopes = random_box(rng, drilled)
-    posture, looks = int(rng.integers(4)), int(rng.choice([4, 8]))
-    rules = rules_of(drilled, min_rate=float(rng.choice([0.0, np.deg2rad(10.0)])), looks=looks)
+    posture, samples = int(rng.integers(4)), int(rng.choice([4, 8]))
+    rules = rules_of(drilled, min_rate=float(rng.choice([0.0, np.deg2rad(10.0)])), samples=samples)
     terms, of_travel = np.zeros((MOST_TERMS, TERM)), float(rng.integers(2))
     for term in terms[: rng.integers(1, MOST_TERMS + 1)]:
-        term[:] = rng.integers(2), rng.integers(6), rng.integers(looks), rng.choice([-1, 1]), rng.exponential() * 0.1
+        term[:] = rng.integers(2), rng.integers(6), rng.integers(samples), rng.choice([-1, 1]), rng.exponential() * 0.1
     plane = Drilling(robot, tool, hole).plane
     model = Search(robot.arm, plane, rules, [posture], 1.0, 0.0).models[posture]
 
     def row_of(psi, slopes):
         rows, known, _, _, room, _ = _room()
         rows[0, kernels.LOW], rows[0, kernels.HIGH] = slopes
-        aim = terms, of_travel, looks_at(looks)
+        aim = terms, of_travel, sampled_at(samples)
         left, _ = bound_legs.examine(model, rules, aim, np.array(psi), rows, known, 1, 1, np.zeros(0), room)
         return rows[0].copy() if left else None
 
     row = row_of(psi, slopes)
-    at = slice(LANES, LANES + looks)
-    smooth = model.unknown[DERIVATIVE, :looks] == 0.0
+    at = slice(LANES, LANES + samples)
+    smooth = model.unknown[DERIVATIVE, :samples] == 0.0
     units = np.where(smooth, model.rows[model.denominator_middle, at], model.rows[model.denominator[1], at])
     count = 0
     for _ in range(6):
@@ -142,9 +143,9 @@ def check_weights(rng, drilled):
             if least < -1e20:
                 continue
             value = of_travel * truth["travel"]
-            for _, joint, look, way, multiplier in terms[terms[:, LEG] == leg]:
-                i, j = int(joint), int(look)
-                s = kernels.share(looks, 0, j) * hole.depth
+            for _, joint, sample, way, multiplier in terms[terms[:, LEG] == leg]:
+                i, j = int(joint), int(sample)
+                s = kernels.share(samples, 0, j) * hole.depth
                 theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), s, psi_t + slope * s)
                 branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)
                 rate = (theta_s + slope * theta_psi)[branch, i] * robot.arm.sign[i]
@@ -192,7 +193,7 @@ class TestABox:
                 truth = boxes.leg(drilled, posture, psi, slope)
                 if truth is None or not left:
                     continue
-                for j, share in enumerate(looks_at(8)):
+                for j, share in enumerate(sampled_at(8)):
                     s = share * hole.depth
                     theta_s, theta_psi = joint_rates(Drilling(robot, tool, hole), s, psi + slope * s)
                     branch = 2 * posture + (0 if robot.arm.sign[4] > 0 else 1)

@@ -197,7 +197,7 @@ class TestCommand:
         assert shown["format"] == "zerorev.comparison/1"
         assert [hole["id"] for hole in shown["holes"]] == ["P1"]
 
-    def test_csv_has_a_row_a_run(self, job_file, tmp_path, capsys):
+    def test_csv_has_a_row_per_run(self, job_file, tmp_path, capsys):
         target = tmp_path / "out.csv"
         arguments = ["compare", job_file, "--methods=exact,swarm", "--seeds=3", "--budget=400", "--hole=P1"]
         assert main([*arguments, "-o", str(target)]) == common.FINE

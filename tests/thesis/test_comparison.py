@@ -90,7 +90,7 @@ class TestData:
         assert (direct["outcomes"][0]["reversals"], direct["outcomes"][0]["travel_deg"]) == (None, None)
         assert swarm["outcomes"][2]["psi_deg"] == pytest.approx([10, -20, 30])
 
-    def test_a_row_a_run(self, answer):
+    def test_a_row_per_run(self, answer):
         rows = list(csv.DictReader(io.StringIO(shown.comparison_csv(answer))))
         assert len(rows) == len(answer.runs)
         assert rows[0]["seed"] == ""

@@ -43,7 +43,7 @@ def compare(
         budget: Evaluations a run at most; by default 5,100, the thesis'.
         samples: Steps of a motion that the objective looks at; by default 200, the thesis'.
         crowded: The samples crowd at the ends of the legs, where reversals hide between even ones, as the thesis' are.
-        output: Where to write the answer: JSON, or a row a run where it ends in .csv.
+        output: Where to write the answer: JSON, or a row per run where it ends in .csv.
         figure: Picture to draw (PNG): box plots.
         json: Print the answer as JSON on standard output, and nothing else there.
     """

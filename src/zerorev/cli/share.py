@@ -29,10 +29,10 @@ def share(
     is the same hole of the part.
 
     Args:
-        jobs: Two job files (YAML) or more, one a robot.
+        jobs: Two job files (YAML) or more, one per robot.
         balance: No robot takes more than an even share of the holes, as far as they can be drilled so.
         output: Where to write the answer (JSON). Without it the answer is only shown.
-        write_jobs: Folder for one job file a robot, with the holes that it takes; it is made if its parent exists.
+        write_jobs: Folder for one job file per robot, with the holes that it takes; it is made if its parent exists.
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the answer as JSON on standard output, and nothing else there.

@@ -84,7 +84,7 @@ def _box(form: MapFile, document: Document) -> tuple[Axes, None]:
         given, where = getattr(form.targets, name), document.where(("targets", name))
         values = _range(given, where) if isinstance(given, RangeForm) else np.array(given, dtype=float)
         if len(np.unique(values)) < len(values):
-            raise InputError("a value stands twice", where=where, accepted="values that differ")
+            raise InputError("a value appears twice", where=where, accepted="values that differ")
         axes.append(values)
     x, y, z = axes
     return (x, y, z), None

@@ -41,7 +41,7 @@ def place_of(path: str | Path) -> Path:
             if not stat.S_ISLNK(_mode(target)):
                 return target
             target = target.parent / target.readlink()
-        raise OutputError(str(path), "its links lead in a circle")
+        raise OutputError(str(path), "its links form a loop")
 
 
 def _mode(path: Path) -> int:

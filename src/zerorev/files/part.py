@@ -1,4 +1,4 @@
-"""The part of a plan that is finished: one line a hole, beside the file that they become.
+"""The part of a plan that is finished: one line per hole, beside the file that they become.
 
 A run that is interrupted, killed or out of power leaves it behind. The same command resumes, and what reads
 plan files reads it, too.

@@ -112,7 +112,7 @@ def _header(first: tuple[int, list[str]]) -> list[str] | None:
     if missing := [name for name in COLUMNS if name not in names]:
         raise InputError(f"no column {', '.join(missing)}", where=where, accepted=accepted)
     if len(names) > len(set(names)):
-        raise InputError("a column stands twice", where=where, accepted=accepted)
+        raise InputError("a column appears twice", where=where, accepted=accepted)
     return names
 
 

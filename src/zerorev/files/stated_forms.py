@@ -39,7 +39,7 @@ Weight = Annotated[float, Field(ge=0, le=1e15)]
 
 
 class Form(BaseModel):
-    """Strict: text is no number, true is no 1, NaN is nothing at all, and an unknown key is an error."""
+    """Strict: text is not a number, true is not 1, NaN is not accepted, and an unknown key is an error."""
 
     # built at the first use, so that `import zerorev` need not wait for it
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False, frozen=True, defer_build=True)

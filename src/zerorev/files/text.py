@@ -267,7 +267,7 @@ def csv_rows(
         if unknown := [name for name in header if name not in columns]:
             raise InputError(f"unknown column {', '.join(map(repr, unknown))}", where=where, accepted=accepted)
         if len(header) > len(set(header)):
-            raise InputError("a column stands twice", where=where, accepted=accepted)
+            raise InputError("a column appears twice", where=where, accepted=accepted)
         for cells in reader:
             where = f"{file}, line {reader.line_num}"
             if not any(cell.strip() for cell in cells):

@@ -103,7 +103,7 @@ def read_urdf(path: str | Path) -> Description:
     links = [_named(entry, str(path)) for entry in root.findall("link")]
     bases = [link for link in links if link not in children]
     if len(bases) != 1:
-        raise InputError(f"{len(bases)} links that nothing carries", where=str(path), accepted="one base link")
+        raise InputError(f"{len(bases)} root links", where=str(path), accepted="one")
     by_child = {joint.child: joint for joint in joints}
     if len(by_child) < len(joints):
         raise InputError(
@@ -172,7 +172,7 @@ def _depth(joint: Joint, by_child: dict[str, Joint], where: str) -> int:
     count, seen, at = 0, set[str](), joint
     while True:
         if at.child in seen:
-            raise InputError("joints that go round in a circle", where=where, accepted="a chain")
+            raise InputError("joints that form a loop", where=where, accepted="a chain")
         seen.add(at.child)
         count += at.axis is not None
         if at.parent not in by_child:
@@ -212,7 +212,7 @@ def _inside(name: str, folder: Path, where: str) -> Path:
             found = path.resolve()
             if found.is_relative_to(folder) and found.is_file():
                 return found
-    except (OSError, ValueError, RuntimeError):  # a name that no file can have; links that lead in a circle
+    except (OSError, ValueError, RuntimeError):  # a name that no file can have; links that form a loop
         raise InputError(f"the mesh {reprlib.repr(name)}", where=where, accepted=accepted) from None
     raise InputError(f"no mesh {name} inside {folder}", where=where, accepted="meshes in the folder of the file")
 

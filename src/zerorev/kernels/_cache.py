@@ -1,7 +1,7 @@
 """The cache of compiled kernels: where it lies, what of it is taken, and whose turn it is to fill it.
 
 It is Numba's, with four differences. What is found in it is loaded without the compiler; a change to any file of
-kernels makes all of them stale; an entry that is damaged, or cannot be read, is made anew; and where there is no place
+kernels makes all of them stale; an entry that is damaged, or cannot be read, is made again; and where there is no place
 for it, kernels are compiled without.
 """
 

@@ -35,7 +35,7 @@ _njit: Any = numba.njit  # whose stubs do not know of `_nrt`
 
 @contextmanager
 def _own_copies() -> Iterator[None]:
-    """Whatever is compiled meanwhile calls its own copies of the kernels that it calls, and no others.
+    """Everything compiled meanwhile calls its own copies of the kernels that it calls, and no others.
 
     Numba compiles what a kernel calls into the kernel once more, under the same name, and optimises each copy in its
     place, so that they round differently. All copies of a name in a process give way to the first: in the process that
@@ -87,7 +87,7 @@ def compiled_here(function: Callable[..., Any], counted: bool, options: dict[str
 
 
 class _SayOnce(event.Listener):
-    """Logs the first compilation of a process; loading from the cache is no compilation."""
+    """Logs the first compilation of a process; loading from the cache does not count."""
 
     said = False
 

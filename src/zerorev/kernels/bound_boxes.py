@@ -13,7 +13,7 @@ from zerorev.kernels._jit import kernel
 from zerorev.kernels.field import cos_sin
 from zerorev.kernels.intervals import LANES, cos_sin_over
 
-LOOKS = 8  # stand-offs of one look, at the most: `rules.looks` says how many
+SAMPLES = 8  # stand-offs at which a box is examined, at most: `rules.samples` says how many
 
 # columns of a box of legs; STRETCH: how much of the depth its stand-offs are spread over; ALONG_SLOPE: derivative of
 # the travel by the slope, about
@@ -36,14 +36,14 @@ _COS, _SIN, _COS_C, _SIN_C, _STANDOFF, _SLOPE, _SLOPE_C, _HALF_PSI, _HALF_SLOPE,
 
 
 @kernel
-def share(looks, group, look):  # type: ignore[no-untyped-def]
+def share(samples, group, sample):  # type: ignore[no-untyped-def]
     """Where on a leg, as a share of its length, the stand-offs of a group lie: Chebyshev's, then finer and finer."""
     if group == 0:
-        return 0.5 * (1.0 - np.cos(np.pi * look / (looks - 1)))
+        return 0.5 * (1.0 - np.cos(np.pi * sample / (samples - 1)))
     if group == 1:
-        return 0.5 * (1.0 - np.cos(np.pi * (look + 0.5) / looks))
+        return 0.5 * (1.0 - np.cos(np.pi * (sample + 0.5) / samples))
     phase = (0.25, 0.75, 0.125, 0.625, 0.375, 0.875)[group - 2]
-    return (look + phase) / looks
+    return (sample + phase) / samples
 
 
 @kernel
@@ -86,21 +86,21 @@ def place(rows, inputs, sweeping, rules, psi, boxes, first, count, standoffs, sp
         psi: interval of spins at the target, shape (2,).
         boxes: shape (N, COLUMNS).
         first: of the boxes.
-        count: of the boxes, at most LANES // looks.
-        standoffs: shape (looks,) [m].
+        count: of the boxes, at most LANES // samples.
+        standoffs: shape (samples,) [m].
         spread: whether each box has them drawn in by its STRETCH.
         low: room, shape (LANES,).
         high: room, shape (LANES,).
     """
-    middle, looks = 0.5 * (psi[0] + psi[1]), standoffs.shape[0]
+    middle, samples = 0.5 * (psi[0] + psi[1]), standoffs.shape[0]
     half_psi = max(psi[1] - middle, middle - psi[0])
     for lane in range(LANES):
-        box, look = first + min(lane // looks, count - 1), lane % looks
+        box, sample = first + min(lane // samples, count - 1), lane % samples
         a, b = boxes[box, LOW], boxes[box, HIGH]
         stretch = boxes[box, STRETCH] if spread else 1.0
-        s = t = standoffs[look] * stretch
+        s = t = standoffs[sample] * stretch
         if sweeping:
-            t = standoffs[min(look + 1, looks - 1)] * stretch
+            t = standoffs[min(sample + 1, samples - 1)] * stretch
         low[lane] = psi[0] + min(min(s * a, t * a), min(s * b, t * b)) - EDGE
         high[lane] = psi[1] + max(max(s * a, t * a), max(s * b, t * b)) + EDGE
         _fill(rows, inputs[_STANDOFF], lane, s, t)

@@ -1,4 +1,4 @@
-"""Boxes of legs: what every leg of a box must do at the least (theory §3).
+"""Boxes of legs: what every leg of a box must do at least (theory §3).
 
 A box is examined at a few stand-offs only: if a joint has the wrong sign at one of them for every leg of the box, no
 leg of the box keeps that joint's direction. What happens between those stand-offs is left to the motion itself, which
@@ -49,7 +49,7 @@ def examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room): 
     Args:
         formulas: of the posture.
         rules: what is asked.
-        aim: terms, whether they are added to the travel, and the first looks, see `bound_multipliers`.
+        aim: terms, whether they are added to the travel, and the first stand-offs, see `bound_multipliers`.
         psi: interval of spins at the target, shape (2,).
         legs: in and out, boxes, shape (N, COLUMNS).
         known: out, shape (N, KNOWN, 6).
@@ -59,21 +59,21 @@ def examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room): 
         room: whether a box may hold a leg, shape (N,), and two rows, each of shape (LANES,).
 
     Returns:
-        how many boxes are left, and how many looks that were, each at `rules.looks` stand-offs of one box.
+        how many boxes are left, and how many passes that took, each at `rules.samples` stand-offs of one box.
     """
     alive, low, high = room
     for n in range(count):
         alive[n] = _begin(rules, psi, legs[n], known[n])
-    count, looks = _closed(legs, known, count, alive), 0
-    looks_of, boxes = rules.looks, LANES // rules.looks
-    standoffs, swept = np.empty(looks_of), np.empty((6, looks_of))
-    more = (cuts.shape[0] + looks_of - 1) // looks_of
+    count, passes = _closed(legs, known, count, alive), 0
+    samples_of, boxes = rules.samples, LANES // rules.samples
+    standoffs, swept = np.empty(samples_of), np.empty((6, samples_of))
+    more = (cuts.shape[0] + samples_of - 1) // samples_of
     for group in range(groups + more):
-        for j in range(looks_of):
+        for j in range(samples_of):
             if group < groups:
-                standoffs[j] = rules.depth * (aim[2][j] if group == 0 else share(looks_of, group, j))
+                standoffs[j] = rules.depth * (aim[2][j] if group == 0 else share(samples_of, group, j))
             else:
-                standoffs[j] = rules.depth * cuts[min(looks_of * (group - groups) + j, cuts.shape[0] - 1)]
+                standoffs[j] = rules.depth * cuts[min(samples_of * (group - groups) + j, cuts.shape[0] - 1)]
         for first in range(0, count, boxes):
             some = min(boxes, count - first)
             _run(formulas, group == 0, rules, psi, legs, first, some, standoffs, group < groups, low, high)
@@ -83,11 +83,11 @@ def examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room): 
                 alive[n] = alive[n] and _least_cost(rules, known[n]) <= rules.most_cost + 1e-9
             if group == 0:
                 examine_travel(formulas, rules, aim, psi, legs, known, first, some, standoffs, alive, swept, low, high)
-        looks += count
+        passes += count
         count = _closed(legs, known, count, alive)
         if count == 0:
             break
-    return count, looks
+    return count, passes
 
 
 @kernel
@@ -130,25 +130,25 @@ def move(legs, known, to, from_legs, from_known, at):  # type: ignore[no-untyped
 
 
 @kernel
-def _run(formulas, first_look, rules, psi, legs, first, count, standoffs, spread, low, high):  # type: ignore[no-untyped-def]
-    """Run the tape `angles` at the first look, `signs` afterwards."""
-    tape = 1 if first_look else 0
+def _run(formulas, first_pass, rules, psi, legs, first, count, standoffs, spread, low, high):  # type: ignore[no-untyped-def]
+    """Run the tape `angles` on the first pass, `signs` afterwards."""
+    tape = 1 if first_pass else 0
     rows, unknown, constants = formulas.rows, formulas.unknown, formulas.constants[formulas.starts[tape] :]
     clear(unknown)
     place(rows, formulas.inputs[tape], False, rules, psi, legs, first, count, standoffs, spread, low, high)
-    if first_look:
+    if first_pass:
         run(formulas.angles, constants, rows, unknown)
     else:
         run(formulas.signs, constants, rows, unknown)
 
 
 @kernel
-def judge_signs(formulas, first_look, rules, box, ordered, known):  # type: ignore[no-untyped-def]
-    """What the signs at one look say of a box.
+def judge_signs(formulas, first_pass, rules, box, ordered, known):  # type: ignore[no-untyped-def]
+    """What the signs of one pass say of a box.
 
     Args:
         formulas: whose tape was run.
-        first_look: whether it is the first one, at stand-offs from the target on.
+        first_pass: whether it is the first one, at stand-offs from the target on.
         rules: whose threshold counts.
         box: which one, of those that were placed.
         ordered: whether the stand-offs rise.
@@ -157,17 +157,17 @@ def judge_signs(formulas, first_look, rules, box, ordered, known):  # type: igno
     Returns:
         whether a leg of the box may exist.
     """
-    rows, unknown, first = formulas.rows, formulas.unknown, box * rules.looks
-    tape = 1 if first_look else 0
-    for lane in range(first, first + rules.looks):
+    rows, unknown, first = formulas.rows, formulas.unknown, box * rules.samples
+    tape = 1 if first_pass else 0
+    for lane in range(first, first + rules.samples):
         if unknown[OUT_OF_REACH, lane] != 0.0:
             return False
     for i in range(6):
         rate, den = formulas.rate[tape, i], formulas.denominator[tape, i]
         plus, minus = formulas.plus[tape, i], formulas.minus[tape, i]
         start = changes = last = target = 0
-        for look in range(rules.looks):
-            lane = first + look
+        for sample in range(rules.samples):
+            lane = first + sample
             if unknown[VALUE, lane] != 0.0:
                 continue
             nil = NIL * rows[den, LANES + lane]
@@ -182,7 +182,7 @@ def judge_signs(formulas, first_look, rules, box, ordered, known):  # type: igno
                 elif sign != last:
                     changes += 1
                 last = sign
-                if look == 0:
+                if sample == 0:
                     target = sign
             if rules.min_rate > 0.0:
                 if rows[plus, LANES + lane] < 0.0:
@@ -196,13 +196,13 @@ def judge_signs(formulas, first_look, rules, box, ordered, known):  # type: igno
         if start != 0 and ordered:
             same, other = (FORTH, BACK) if start > 0 else (BACK, FORTH)
             known[same, i] = max(known[same, i], changes)
-            known[other, i] = max(known[other, i], NEVER if first_look and target != 0 else changes + 1)
+            known[other, i] = max(known[other, i], NEVER if first_pass and target != 0 else changes + 1)
     return True
 
 
 @kernel
 def _least_cost(rules, known):  # type: ignore[no-untyped-def]
-    """What the turns of a leg cost by themselves, at the least."""
+    """What the turns of a leg cost by themselves, at least."""
     cost = 0.0
     for i in range(6):
         turns = min(known[FORTH, i], known[BACK, i])

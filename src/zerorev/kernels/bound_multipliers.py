@@ -2,15 +2,15 @@
 
 A box is dead if one condition fails all over it. But next to the least travel it is conditions that keep it from being
 less; boxes reach across them, and the travel beyond, where no motion may go, counts. So conditions g_k >= 0 are added
-to the travel f with multipliers l_k >= 0: f - sum l_k g_k is no more than f wherever all conditions are kept, whatever
-the multipliers are; with Lagrange's it is level at the optimum, and what a box of width w leaves open is of the order
+to the travel f with multipliers l_k >= 0: f - sum l_k g_k is no more than f wherever all conditions are kept, for any
+multipliers; with Lagrange's it is level at the optimum, and what a box of width w leaves open is of the order
 of w^2 instead of w. Where a few conditions contradict each other the same sum refutes without f (Farkas): no motion
 keeps them all where it is positive.
 
 The multipliers of a node are those of the linear programme that its conditions make at the middle of its best pair of
-boxes. They are for its halves. A term is a condition with its multiplier: leg, joint, look, direction of the joint on
-that leg, and the multiplier of its rate [m]; where that is 0 there is none. A condition that is tightest within the
-leg is best seen there: next to it one of the first looks is moved. Conventions are those of `bound_boxes`.
+boxes. They are for its halves. A term is a condition with its multiplier: leg, joint, stand-off, direction of the joint
+on that leg, and the multiplier of its rate [m]; where that is 0 there is none. A condition that is tightest within the
+leg is best seen there: next to it one of the first stand-offs is moved. Conventions are those of `bound_boxes`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from zerorev.kernels.bound_boxes import (
     FORTH,
     HIGH,
     LEAST,
-    LOOKS,
     LOW,
     MAY_BACK,
     MAY_FORTH,
     PER_LEG,
+    SAMPLES,
     STRETCH,
     WEIGHED,
     clear,
@@ -44,19 +44,19 @@ from zerorev.kernels.legs import NIL
 from zerorev.kernels.simplex import CONTRADICTED, FOUND, WIDTH, weighed
 
 MOST_TERMS = 4
-LEG, JOINT, LOOK, DIRECTION, MULTIPLIER, TERM = range(6)  # columns of a term
+LEG, JOINT, SAMPLE, DIRECTION, MULTIPLIER, TERM = range(6)  # columns of a term
 ROUNDING = 1e-14  # relative: more than that of the few operations here
 UNKNOWNS = 3  # spin at the target, twist of the first leg, twist of the second
-MOST_ROWS = 2 * 6 * LOOKS
-CLOSE = 0.02  # [rad] width of a node below which looks are moved
-TIGHT = 0.1  # of the greatest along the leg: what is no less may be nil at no look
-APART = 1e-3  # of the depth, between two looks
+MOST_ROWS = 2 * 6 * SAMPLES
+CLOSE = 0.02  # [rad] width of a node below which stand-offs are moved
+TIGHT = 0.1  # of the greatest along the leg: a rate that is no less is not taken for tight
+APART = 1e-3  # of the depth, between two stand-offs
 AROUND = 4.0  # half widths of twist about a pair, within which its neighbours are to be level, too
 
 
 @kernel
 def turns_of(one, other, i):  # type: ignore[no-untyped-def]
-    """How often a joint reverses at the least on a motion of two boxes of legs."""
+    """How often a joint reverses at least on a motion of two boxes of legs."""
     fp, bp, fr, br = one[FORTH, i], one[BACK, i], other[FORTH, i], other[BACK, i]
     turns = min(min(fp + br, bp + fr), 1 + min(fp + fr, bp + br))
     if turns == 0 and not ((one[MAY_FORTH, i] and other[MAY_BACK, i]) or (one[MAY_BACK, i] and other[MAY_FORTH, i])):
@@ -88,7 +88,7 @@ def weigh(formulas, rules, terms, of_travel, box, standoffs, by_slope, half_slop
         terms: shape (MOST_TERMS, TERM).
         of_travel: 1.0, or 0.0 where the conditions are to contradict each other.
         box: which one, of those that were placed.
-        standoffs: shape (looks,) [m].
+        standoffs: shape (samples,) [m].
         by_slope: derivative of the travel by the slope, at least and at most [m].
         half_slope: of the box [rad/m].
         legs: in and out, row of the box, shape (COLUMNS,); its travel is known.
@@ -103,8 +103,8 @@ def weigh(formulas, rules, terms, of_travel, box, standoffs, by_slope, half_slop
         for t in range(MOST_TERMS):
             if terms[t, MULTIPLIER] == 0.0 or terms[t, LEG] != leg or not known:
                 continue
-            i, look = int(terms[t, JOINT]), int(terms[t, LOOK])
-            lane, d, s = box * standoffs.shape[0] + look, terms[t, DIRECTION], standoffs[look]
+            i, sample = int(terms[t, JOINT]), int(terms[t, SAMPLE])
+            lane, d, s = box * standoffs.shape[0] + sample, terms[t, DIRECTION], standoffs[sample]
             smooth = unknown[DERIVATIVE, lane] == 0.0
             row, den = formulas.rate[1, i], formulas.denominator[1, i]
             if smooth:
@@ -112,7 +112,7 @@ def weigh(formulas, rules, terms, of_travel, box, standoffs, by_slope, half_slop
             known = unknown[VALUE, lane] == 0.0 and rows[den, LANES + lane] > 0.0
             if not known:
                 continue
-            # the condition is on the rate times its denominator; any multiplier will do, so that of the middle does
+            # the condition is on the rate times its denominator; any multiplier is admissible: this is the middle's
             factor = terms[t, MULTIPLIER] / rows[den, LANES + lane]
             most = max(d * rows[row, lane], d * rows[row, LANES + lane])
             most -= min(m * rows[den, lane], m * rows[den, LANES + lane])
@@ -159,8 +159,8 @@ def weighed_pair(one, other, half_psi):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def move_looks(formulas, rules, psi, slope, first_leg, one, other, shares, room):  # type: ignore[no-untyped-def]
-    """Move looks to where the rates of a leg are least within it.
+def move_samples(formulas, rules, psi, slope, first_leg, one, other, shares, room):  # type: ignore[no-untyped-def]
+    """Move stand-offs to where the rates of a leg are least within it.
 
     Args:
         formulas: of the posture.
@@ -170,10 +170,10 @@ def move_looks(formulas, rules, psi, slope, first_leg, one, other, shares, room)
         first_leg: whether it is the first of its motion.
         one: what is known of the first leg's box, shape (KNOWN, 6).
         other: of the second's.
-        shares: in and out, rising, shape (LOOKS,).
+        shares: in and out, rising, shape (SAMPLES,).
         room: two rows, each of shape (LANES,).
     """
-    rows, (low, high), m, looks = formulas.rows, room, least_rate(rules), rules.looks
+    rows, (low, high), m, samples = formulas.rows, room, least_rate(rules), rules.samples
     clear(formulas.unknown)
     place_along(rows, formulas.inputs[0], rules, psi, slope, low, high)
     run(formulas.signs, formulas.constants, rows, formulas.unknown)
@@ -197,7 +197,7 @@ def move_looks(formulas, rules, psi, slope, first_leg, one, other, shares, room)
         bend = low[at - 1] - 2.0 * low[at] + low[at + 1]
         place_of = (at + 0.5 + (0.5 * (low[at - 1] - low[at + 1]) / bend if bend > 0.0 else 0.0)) / LANES
         nearest = 1
-        for j in range(2, looks - 1):
+        for j in range(2, samples - 1):
             if abs(shares[j] - place_of) < abs(shares[nearest] - place_of):
                 nearest = j
         if shares[nearest - 1] + APART < place_of < shares[nearest + 1] - APART:
@@ -216,18 +216,18 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, shares, room):  #
         known: shape (N, KNOWN, 6).
         pair: which two, shape (2,).
         terms: out, shape (MOST_TERMS, TERM).
-        shares: out, where the first looks are, as shares of the depth, shape (LOOKS,).
+        shares: out, where the first stand-offs are, as shares of the depth, shape (SAMPLES,).
         room: two rows, each of shape (LANES,).
 
     Returns:
         1.0; 0.0 if the conditions contradict each other.
     """
     low, high = room
-    rows, unknown, standoffs = formulas.rows, formulas.unknown, np.empty(rules.looks)
+    rows, unknown, standoffs = formulas.rows, formulas.unknown, np.empty(rules.samples)
     for t in range(MOST_TERMS):
         terms[t, MULTIPLIER] = 0.0
-    for j in range(rules.looks):
-        shares[j] = share(rules.looks, 0, j)
+    for j in range(rules.samples):
+        shares[j] = share(rules.samples, 0, j)
     middle = 0.5 * (psi[0] + psi[1])
     spins, boxes = np.array([middle, middle]), np.zeros((2, COLUMNS))
     cost, bound = np.zeros(UNKNOWNS), np.ones(UNKNOWNS)
@@ -243,8 +243,8 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, shares, room):  #
     if psi[1] - psi[0] < CLOSE and rules.most_cost < rules.least_weight:
         for leg in range(2):
             slope = boxes[leg, LOW]
-            move_looks(formulas, rules, middle, slope, leg == 0, known[pair[0]], known[pair[1]], shares, room)
-    for j in range(rules.looks):
+            move_samples(formulas, rules, middle, slope, leg == 0, known[pair[0]], known[pair[1]], shares, room)
+    for j in range(rules.samples):
         standoffs[j] = rules.depth * shares[j]
     clear(unknown)
     place(rows, formulas.inputs[1], False, rules, spins, boxes, 0, 2, standoffs, False, low, high)
@@ -256,8 +256,8 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, shares, room):  #
         way = goes(one, other, i)
         for leg in range(2 if way != 0 else 0):
             d = float(way if leg == 0 else -way)
-            for j in range(rules.looks):
-                lane = leg * rules.looks + j
+            for j in range(rules.samples):
+                lane = leg * rules.samples + j
                 if unknown[VALUE, lane] != 0.0 or unknown[DERIVATIVE, lane] != 0.0:
                     continue
                 by_den = m * rows[formulas.denominator_psi[i], lane]
@@ -282,6 +282,6 @@ def find_terms(formulas, rules, psi, legs, known, pair, terms, shares, room):  #
     for k in range(UNKNOWNS + 1):
         n = held[k]
         if 0 <= n < count and worth[k] > 0.0:
-            terms[k, LEG], terms[k, JOINT], terms[k, LOOK] = which[n, 0], which[n, 1], which[n, 2]
+            terms[k, LEG], terms[k, JOINT], terms[k, SAMPLE] = which[n, 0], which[n, 1], which[n, 2]
             terms[k, DIRECTION], terms[k, MULTIPLIER] = which[n, 3], worth[k] / size[n]
     return 1.0 if outcome == FOUND else 0.0

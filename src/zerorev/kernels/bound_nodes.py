@@ -11,7 +11,7 @@ BIG = 1e4  # more than any travel [rad]
 NOTHING = 1e300
 
 # tree.counts
-HEAP, NODES, SLOPES, LOOKS_DONE, LAST_LEFT, LAST_RIGHT, EXAMINED, TRIED, LOGGED, COUNTS = range(10)
+HEAP, NODES, SLOPES, PASSES_DONE, LAST_LEFT, LAST_RIGHT, EXAMINED, TRIED, LOGGED, COUNTS = range(10)
 # tree.values
 BEST, LEFT, CANDIDATE_VALUE, GAP = range(4)
 # columns of tree.nodes, and of tree.lists

@@ -1,4 +1,4 @@
-"""What two boxes of legs cost in reversals and travel at the least, together a motion (theory §3).
+"""What two boxes of legs cost in reversals and travel at least, together a motion (theory §3).
 
 The value of a pair is reversals x BIG + travel, so that one number orders both. Conventions are those of `bound_nodes`
 and `bound_boxes`.
@@ -23,7 +23,7 @@ from zerorev.kernels.bound_nodes import BIG, NODE_OF_TRAVEL, NOTHING, threshold
 
 @kernel
 def pair_cost(rules, one, other):  # type: ignore[no-untyped-def]
-    """What two boxes of legs cost in reversals at the least; NOTHING where no turns fit both."""
+    """What two boxes of legs cost in reversals at least; NOTHING where no turns fit both."""
     cost = 0.0
     for i in range(6):
         cost += rules.weights[i] * turns_of(one, other, i)
@@ -42,7 +42,7 @@ def pair_cost(rules, one, other):  # type: ignore[no-untyped-def]
 
 @kernel
 def pair_travel(one, other, half_psi):  # type: ignore[no-untyped-def]
-    """What two boxes of legs travel at the least [rad]."""
+    """What two boxes of legs travel at least [rad]."""
     low, high = one[BY_PSI_LOW] + other[BY_PSI_LOW], one[BY_PSI_HIGH] + other[BY_PSI_HIGH]
     varies = max(abs(low), abs(high)) * half_psi + one[BY_SLOPE] + other[BY_SLOPE]
     return max(one[LEAST] + other[LEAST] - varies * (1.0 + 1e-12), one[TWIST] + other[TWIST])

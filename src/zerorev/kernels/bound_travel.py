@@ -46,7 +46,7 @@ def examine_travel(formulas, rules, aim, psi, legs, known, first, count, standof
         some = some or alive[n]
     if not some:
         return
-    rows, unknown, at = formulas.sweep_rows, formulas.sweep_unknown, np.empty(rules.looks)
+    rows, unknown, at = formulas.sweep_rows, formulas.sweep_unknown, np.empty(rules.samples)
     clear(unknown)
     place(rows, formulas.inputs[2], True, rules, psi, legs, first, count, standoffs, True, low, high)
     run(formulas.sweep, formulas.constants[formulas.starts[2] :], rows, unknown)
@@ -54,12 +54,12 @@ def examine_travel(formulas, rules, aim, psi, legs, known, first, count, standof
         n = first + box
         if not alive[n]:
             continue
-        for j in range(rules.looks):
+        for j in range(rules.samples):
             at[j] = standoffs[j] * legs[n, STRETCH]
         for i in range(6):
             row = formulas.swept[i]
-            for j in range(rules.looks - 1):
-                lane = box * rules.looks + j
+            for j in range(rules.samples - 1):
+                lane = box * rules.samples + j
                 most = max(abs(rows[row, lane]), abs(rows[row, LANES + lane]))
                 swept[i, j] = UNKNOWN if unknown[VALUE, lane] != 0.0 else most * (at[j + 1] - at[j])
         alive[n] = judge_travel(formulas, rules, aim, psi, box, at, legs[n], known[n], swept)
@@ -72,29 +72,29 @@ def judge_travel(formulas, rules, aim, psi, box, standoffs, legs, known, swept):
     Args:
         formulas: whose tape `angles` was run on stand-offs from the target outwards.
         rules: whose limits count.
-        aim: terms, whether they are added to the travel, and the first looks, see `bound_multipliers`.
+        aim: terms, whether they are added to the travel, and the first stand-offs, see `bound_multipliers`.
         psi: interval of spins at the target, shape (2,).
         box: which one, of those that were placed.
-        standoffs: shape (looks,) [m].
+        standoffs: shape (samples,) [m].
         legs: in and out, row of the box, shape (COLUMNS,).
         known: in and out, shape (KNOWN, 6).
-        swept: greatest angle that a joint may move from each stand-off to the next [rad], shape (6, looks).
+        swept: greatest angle that a joint may move from each stand-off to the next [rad], shape (6, samples).
 
     Returns:
         whether a leg of the box may exist.
     """
-    looks, (terms, of_travel, _) = rules.looks, aim
-    rows, first = formulas.rows, box * looks
+    samples, (terms, of_travel, _) = rules.samples, aim
+    rows, first = formulas.rows, box * samples
     middle = 0.5 * (psi[0] + psi[1])
     half_psi = max(psi[1] - middle, middle - psi[0]) + EDGE
     slope = 0.5 * (legs[LOW] + legs[HIGH])
     half_slope = max(legs[HIGH] - slope, slope - legs[LOW]) * (1.0 + 1e-12)
-    at, slack, radius = np.empty(looks), np.empty(looks), np.empty(looks)
-    by_low, by_high, share_of, along = np.empty(looks), np.empty(looks), np.empty(looks), np.empty(looks)
+    at, slack, radius = np.empty(samples), np.empty(samples), np.empty(samples)
+    by_low, by_high, share_of, along = np.empty(samples), np.empty(samples), np.empty(samples), np.empty(samples)
     least = by_psi_low = by_psi_high = by_slope_low = by_slope_high = 0.0
     for i in range(6):
         bounded = True
-        for j in range(looks):
+        for j in range(samples):
             lane = first + j
             share_of[j] = 0.0
             turn_low, turn_high = rows[formulas.turning[i], lane], rows[formulas.turning[i], LANES + lane]
@@ -123,7 +123,7 @@ def judge_travel(formulas, rules, aim, psi, box, standoffs, legs, known, swept):
             sign = known[MAY_FORTH, i] - known[MAY_BACK, i]
         along[0] = wrapped(at[0])
         resolved, sum_of = True, 0.0
-        for j in range(1, looks):
+        for j in range(1, samples):
             step = wrapped(at[j] - at[j - 1])
             by_psi = max(abs(by_low[j] - by_high[j - 1]), abs(by_high[j] - by_low[j - 1]))
             s, t = standoffs[j - 1], standoffs[j]
@@ -147,7 +147,7 @@ def judge_travel(formulas, rules, aim, psi, box, standoffs, legs, known, swept):
                 sum_of += abs(step)
                 share_of[j] += direction
                 share_of[j - 1] -= direction
-        for j in range(looks):
+        for j in range(samples):
             k = share_of[j]
             sum_of -= abs(k) * slack[j]
             low, high = (k * by_low[j], k * by_high[j]) if k > 0.0 else (k * by_high[j], k * by_low[j])

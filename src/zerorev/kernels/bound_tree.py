@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.kernels._jit import kernel
-from zerorev.kernels.bound_boxes import GROUPS, HIGH, LOOKS, LOW, VALUE_OF
+from zerorev.kernels.bound_boxes import GROUPS, HIGH, LOW, SAMPLES, VALUE_OF
 from zerorev.kernels.bound_legs import examine, move
 from zerorev.kernels.bound_multipliers import MOST_TERMS, TERM, find_terms
 from zerorev.kernels.bound_nodes import (
@@ -26,7 +26,6 @@ from zerorev.kernels.bound_nodes import (
     LAST_LEFT,
     LEFT,
     LOGGED,
-    LOOKS_DONE,
     NODE_HIGH,
     NODE_LOW,
     NODE_OF_TRAVEL,
@@ -34,6 +33,7 @@ from zerorev.kernels.bound_nodes import (
     NODES,
     NOTHING,
     PARENT,
+    PASSES_DONE,
     POSTURE,
     SLOPES,
     START,
@@ -70,8 +70,8 @@ def examined(formulas, rules, tree, node, psi, legs, known, count, groups, cuts,
     for n in range(before.shape[0]):
         before[n, 0], before[n, 1] = legs[n, LOW], legs[n, HIGH]
     aim = tree.terms[node], tree.nodes[node, NODE_OF_TRAVEL], tree.shares[node]
-    left, looks = examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room)
-    tree.counts[LOOKS_DONE] += looks
+    left, passes = examine(formulas, rules, aim, psi, legs, known, count, groups, cuts, room)
+    tree.counts[PASSES_DONE] += passes
     k = 0
     for n in range(before.shape[0]):
         if k < left and legs[k, LOW] == before[n, 0]:
@@ -164,8 +164,10 @@ def try_motion(formulas, rules, tree, node, one, other, work, out):  # type: ign
         for e in range(SLOPES_TRIED):
             slope = 0.5 * (low + high) + 1.2 * around * (2.0 * e / (SLOPES_TRIED - 1) - 1.0)
             legs[start + e, LOW] = legs[start + e, HIGH] = slope
-        count, looks = examine(formulas, rules, aim, psi, legs[start:], known[start:], SLOPES_TRIED, GROUPS, cuts, room)
-        tree.counts[LOOKS_DONE] += looks
+        count, passes = examine(
+            formulas, rules, aim, psi, legs[start:], known[start:], SLOPES_TRIED, GROUPS, cuts, room
+        )
+        tree.counts[PASSES_DONE] += passes
         ends[k + 1] = start + count
         if count == 0:
             return NOTHING
@@ -183,14 +185,14 @@ def try_motion(formulas, rules, tree, node, one, other, work, out):  # type: ign
 
 
 @kernel
-def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-def]
+def advance(models, rules, tree, most_passes, work):  # type: ignore[no-untyped-def]
     """Examine nodes until there is something to say.
 
     Args:
         models: `Formulas` of the four postures.
         rules: what is asked.
         tree: in and out.
-        most_looks: budget, of all so far.
+        most_passes: budget, of all so far.
         work: room.
 
     Returns:
@@ -199,7 +201,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
         and the two nodes pushed last are where it came from; FULL: the tree needs more room.
     """
     legs = work[0]
-    slot, terms, of_travel, shares = np.empty((2, 2)), np.zeros((MOST_TERMS, TERM)), 1.0, np.zeros(LOOKS)
+    slot, terms, of_travel, shares = np.empty((2, 2)), np.zeros((MOST_TERMS, TERM)), 1.0, np.zeros(SAMPLES)
     while True:
         if tree.counts[HEAP] == 0:
             return EMPTY if tree.values[LEFT] >= NOTHING else LEFT_OVER
@@ -208,7 +210,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
             return PROVEN if tree.values[LEFT] >= threshold(rules, tree) else LEFT_OVER
         if tree.values[LEFT] <= top:
             return LEFT_OVER
-        if tree.counts[LOOKS_DONE] >= most_looks:
+        if tree.counts[PASSES_DONE] >= most_passes:
             return BUDGET
         if tree.counts[NODES] + 2 > tree.nodes.shape[0] or tree.counts[SLOPES] + MOST_LEGS > tree.slopes.shape[0]:
             return FULL
@@ -230,7 +232,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
             of_travel = find_terms(
                 models[posture], rules, np.array([low, high]), legs, work[1], pair, terms, shares, work[4][1:]
             )
-            tree.counts[LOOKS_DONE] += LANES // rules.looks
+            tree.counts[PASSES_DONE] += LANES // rules.samples
         found = NOTHING
         # what a wide node lacks to the best motion, narrower ones will not: few are worth a try
         near = value >= threshold(rules, tree) - NEAR * (tree.values[BEST] - BIG * rules.most_cost)
@@ -256,7 +258,7 @@ def advance(models, rules, tree, most_looks, work):  # type: ignore[no-untyped-d
 
 @kernel
 def _divide(tree, node, value, count, legs, terms, of_travel, shares):  # type: ignore[no-untyped-def]
-    """Halve a node; both halves share the slopes that are left, the multipliers and the looks."""
+    """Halve a node; both halves share the slopes that are left, the multipliers and the stand-offs."""
     start, kept = tree.counts[SLOPES], 0
     for n in range(count):
         if legs[n, VALUE_OF] < NOTHING:
@@ -276,7 +278,7 @@ def _divide(tree, node, value, count, legs, terms, of_travel, shares):  # type: 
         for t in range(MOST_TERMS):
             for k in range(TERM):
                 tree.terms[new, t, k] = terms[t, k]
-        for j in range(LOOKS):
+        for j in range(SAMPLES):
             tree.shares[new, j] = shares[j]
         tree.lists[new, POSTURE] = tree.lists[node, POSTURE]
         tree.lists[new, START], tree.lists[new, COUNT] = start, kept

@@ -1,7 +1,7 @@
-"""Compass searches from a pair of legs, whatever reverses: its figures move by ever less (theory §3).
+"""Compass searches from a pair of legs, with any reversals: its figures move by ever less (theory §3).
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `layout.Constraints` throughout.
+`constraints` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ SLOPES_LOOSE = 4.0  # by so many steps of psi_t a leg may have to follow it, to 
 
 
 @kernel
-def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  # type: ignore[no-untyped-def]
+def judge_point(arm, plane, branch, point, weights, constraints, mode, nodes, legs):  # type: ignore[no-untyped-def]
     """`judge_pair` of (psi_t, slope, slope), inf where it cannot be run; `legs` is room for two legs."""
     psi_t, a, b = point
-    if asked.psi_bound > 0.0 and (
-        max(abs(psi_t), abs(psi_t + a * asked.depth), abs(psi_t + b * asked.depth)) > asked.psi_bound
+    if constraints.psi_bound > 0.0 and (
+        max(abs(psi_t), abs(psi_t + a * constraints.depth), abs(psi_t + b * constraints.depth)) > constraints.psi_bound
     ):
         return np.inf, np.inf, np.inf
-    if max(abs(a), abs(b)) > asked.steepest:
+    if max(abs(a), abs(b)) > constraints.steepest:
         return np.inf, np.inf, np.inf
     cs, work = np.empty((6, 2)), np.empty(ROOM)
     theta_s, theta_psi, principal = np.empty(6), np.empty(6), np.empty(6)
@@ -37,16 +37,16 @@ def judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs):  
         return np.inf, np.inf, np.inf
     controller_angles(arm, cs, branch % 2 == 1, principal)
     if not (
-        trace_leg(arm, plane, branch, psi_t, a, asked.depth, nodes, work, legs[0])
-        and trace_leg(arm, plane, branch, psi_t, b, asked.depth, nodes, work, legs[1])
-        and turns_fit(legs[0], legs[1], False, principal, asked)
+        trace_leg(arm, plane, branch, psi_t, a, constraints.depth, nodes, work, legs[0])
+        and trace_leg(arm, plane, branch, psi_t, b, constraints.depth, nodes, work, legs[1])
+        and turns_fit(legs[0], legs[1], False, principal, constraints)
     ):
         return np.inf, np.inf, np.inf
-    return judge_pair(legs[0], legs[1], a, b, weights, asked, mode)
+    return judge_pair(legs[0], legs[1], a, b, weights, constraints, mode)
 
 
 @kernel
-def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
+def refine(arm, plane, branch, point, step, weights, constraints, mode, nodes, best):  # type: ignore[no-untyped-def]
     """Compass search from a pair of legs: any of its three figures may move, alone or together, by ever less.
 
     Args:
@@ -56,7 +56,7 @@ def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         point: in and out, shape (3,): psi_t [rad] and the two slopes [rad/m].
         step: of psi_t, to begin with [rad].
         weights: see `judge_pair`.
-        asked: `Constraints`.
+        constraints: `Constraints`.
         mode: see `judge_pair`.
         nodes: points on a leg.
         best: out, shape (3,): cost, lack and value.
@@ -64,16 +64,16 @@ def refine(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
     moves = np.empty((27, 3))
     for move in range(27):
         moves[move, 0], moves[move, 1], moves[move, 2] = move % 3 - 1, move // 3 % 3 - 1, move // 9 - 1
-    _search(arm, plane, branch, point, moves, step, 0.0, COMPASS_STEPS, (weights, asked, mode, nodes), best)
+    _search(arm, plane, branch, point, moves, step, 0.0, COMPASS_STEPS, (weights, constraints, mode, nodes), best)
 
 
 @kernel
-def settle(arm, plane, branch, point, step, weights, asked, mode, nodes, best):  # type: ignore[no-untyped-def]
-    """Go down to the bottom from a pair of legs: psi_t moves by ever less, and the slopes find their best at each.
+def settle(arm, plane, branch, point, step, weights, constraints, mode, nodes, best):  # type: ignore[no-untyped-def]
+    """Descend to the bottom from a pair of legs: psi_t moves by ever less, and the slopes find their best at each.
 
-    Where a joint begins to turn round there are edges, and a valley may run down along one. It lies askew to the moves
-    of `refine`, which is soon stopped. At one psi_t it does not, as there the legs hardly depend on each other; and
-    which way it goes from one psi_t to the next is told by the last move that was of use.
+    Where a joint begins to turn round there are edges, and a valley may run down along one. It is tilted against the
+    moves of `refine`, which is soon stopped. At one psi_t it does not, as there the legs hardly depend on each other;
+    and which way it goes from one psi_t to the next is decided by the last move that was of use.
 
     Args:
         arm: `ArmGeometry`.
@@ -82,12 +82,12 @@ def settle(arm, plane, branch, point, step, weights, asked, mode, nodes, best): 
         point: see `refine`.
         step: see `refine`.
         weights: see `judge_pair`.
-        asked: `Constraints`.
+        constraints: `Constraints`.
         mode: see `judge_pair`.
         nodes: points on a leg.
         best: see `refine`.
     """
-    judged = (weights, asked, mode, nodes)
+    judged = (weights, constraints, mode, nodes)
     slopes = np.zeros((4, 3))
     slopes[0, 1], slopes[1, 1], slopes[2, 2], slopes[3, 2] = -1.0, 1.0, -1.0, 1.0
     _search(arm, plane, branch, point, slopes, step, SLOPES_SETTLED, SETTLE_STEPS, judged, best)
@@ -127,17 +127,17 @@ def _search(arm, plane, branch, point, moves, step, least, steps, judged, best):
         judged: by (weights, asked, mode, nodes), see `refine`.
         best: see `refine`.
     """
-    weights, asked, mode, nodes = judged
+    weights, constraints, mode, nodes = judged
     legs, tried = np.empty((2, ROWS, 6)), np.empty(3)
-    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, asked, mode, nodes, legs)
+    best[0], best[1], best[2] = judge_point(arm, plane, branch, point, weights, constraints, mode, nodes, legs)
     for _ in range(steps):
         if step < least:
             break
         stuck = True
         for move in moves:
             tried[0] = point[0] + move[0] * step
-            tried[1:] = point[1:] + move[1:] * step / asked.depth
-            cost, lack, value = judge_point(arm, plane, branch, tried, weights, asked, mode, nodes, legs)
+            tried[1:] = point[1:] + move[1:] * step / constraints.depth
+            cost, lack, value = judge_point(arm, plane, branch, tried, weights, constraints, mode, nodes, legs)
             if is_better(cost, lack, value, best):
                 best[0], best[1], best[2] = cost, lack, value
                 point[:] = tried

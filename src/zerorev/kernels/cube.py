@@ -44,7 +44,7 @@ def cube(  # type: ignore[no-untyped-def]
         upper: greatest controller angles [rad], shape (6,).
         first_point: see `sampled.judge`.
         weights: cost of one reversal, and of one radian of travel.
-        only: the one branch to look at, or -1 for all.
+        only: the one branch to examine, or -1 for all.
         outer: psi_s and psi_e [rad], shape (K,).
         target: psi_t [rad], shape (M,).
         score: out, shape (M, K, K): target, start, end.

@@ -1,9 +1,9 @@
 """Fans: the legs out of every spin of a grid, followed once, and all pairs of them (theory §3).
 
-A fan answers which pair of legs, whatever reverses, has the fewest reversals.
+A fan answers which pair of legs, with any reversals, has the fewest reversals.
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `layout.Constraints`, `fan` a `zerorev.search.survey.Fan` throughout.
+`constraints` is a `layout.Constraints`, `fan` a `zerorev.search.survey.Fan` throughout.
 """
 
 from __future__ import annotations
@@ -34,23 +34,23 @@ MAX_FAN = 7 + 2 * GEOMETRIC_SLOPES + 6 * SLOPES_BETWEEN + EVEN_SLOPES
 
 
 @kernel
-def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-def]
-    """Slopes of the legs that are followed out of one point of the target line, whatever joints are to be kept.
+def fan_slopes(kappa, psi_t, constraints, out, critical):  # type: ignore[no-untyped-def]
+    """Slopes of the legs that are followed out of one point of the target line, for any joints to be kept.
 
     Args:
         kappa: critical rates at the target [rad/m], shape (6,).
         psi_t: spin at the target [rad].
-        asked: `Constraints`, for the steepest slope and the bound on the spin.
+        constraints: `Constraints`, for the steepest slope and the bound on the spin.
         out: out, shape (MAX_FAN,): rising slopes.
         critical: out, shape (MAX_FAN,): whether a slope is a critical rate.
 
     Returns:
         how many slopes were written.
     """
-    low, high = -asked.steepest, asked.steepest
-    if asked.psi_bound > 0.0:
-        low = max(low, (-asked.psi_bound - psi_t) / asked.depth)
-        high = min(high, (asked.psi_bound - psi_t) / asked.depth)
+    low, high = -constraints.steepest, constraints.steepest
+    if constraints.psi_bound > 0.0:
+        low = max(low, (-constraints.psi_bound - psi_t) / constraints.depth)
+        high = min(high, (constraints.psi_bound - psi_t) / constraints.depth)
     anchors = np.empty(6)
     pieces = 0
     for i in range(6):
@@ -89,16 +89,16 @@ def fan_slopes(kappa, psi_t, asked, out, critical):  # type: ignore[no-untyped-d
 
 
 @kernel
-def follow(arm, plane, psi, asked, nodes, branches, fan):  # type: ignore[no-untyped-def]
+def follow(arm, plane, psi, constraints, nodes, branches, fan):  # type: ignore[no-untyped-def]
     """Follow a fan of legs out of every spin of a grid, once for both wrist flips of a posture and for any `keep`.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
-        asked: `Constraints`.
+        constraints: `Constraints`.
         nodes: points on a leg.
-        branches: whether to look at a branch, shape (8,).
+        branches: whether to examine a branch, shape (8,).
         fan: out, `Fan`.
     """
     cs = np.empty((6, 2))
@@ -115,20 +115,20 @@ def follow(arm, plane, psi, asked, nodes, branches, fan):  # type: ignore[no-unt
             slopes = fan.slopes[posture, n]
             for i in range(6):
                 kappa[i] = -theta_s[i] / theta_psi[i]
-            count = fan_slopes(kappa, psi[n], asked, slopes, fan.critical[posture, n])
+            count = fan_slopes(kappa, psi[n], constraints, slopes, fan.critical[posture, n])
             fan.counts[posture, n] = count
             for j in range(count):
                 leg = fan.legs[posture, n, j]
-                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], asked.depth, nodes, work, leg):
+                if not trace_leg(arm, plane, 2 * posture, psi[n], slopes[j], constraints.depth, nodes, work, leg):
                     continue
                 for flip in range(2):
                     if branches[2 * posture + flip]:
                         controller_angles(arm, cs, flip == 1, principal)
-                        fan.fits[posture, n, j, flip] = turns_fit(leg, leg, flip == 1, principal, asked)
+                        fan.fits[posture, n, j, flip] = turns_fit(leg, leg, flip == 1, principal, constraints)
 
 
 @kernel
-def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no-untyped-def]
+def judge_pair(a, b, slope_a, slope_b, weights, constraints, mode):  # type: ignore[no-untyped-def]
     """What two legs out of the same point are worth together, limits aside: each figure the less the better.
 
     Args:
@@ -137,12 +137,12 @@ def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no
         slope_a: twist rates [rad/m]; slope_b the other.
         slope_b: see slope_a.
         weights: what a reversal of each joint costs, shape (6,).
-        asked: `Constraints`.
+        constraints: `Constraints`.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
 
     Returns:
         cost: weighted count of reversals.
-        lack: by how much the slowest joint that does not reverse falls short of the threshold [rad/m].
+        lack: by how much the slowest joint that does not reverse is below the threshold [rad/m].
         value: what is to be least.
     """
     cost, margin, travel = 0.0, np.inf, 0.0
@@ -159,17 +159,17 @@ def judge_pair(a, b, slope_a, slope_b, weights, asked, mode):  # type: ignore[no
             leg = a if k == 0 else b
             if leg[LEAST_RATE, i] < -NIL or leg[GREATEST_RATE, i] > NIL:
                 moves = True
-                if asked.mean_rule:
-                    slowest = min(slowest, abs(leg[END_ANGLE, i]) / asked.depth)
+                if constraints.mean_rule:
+                    slowest = min(slowest, abs(leg[END_ANGLE, i]) / constraints.depth)
                 else:
                     slowest = min(slowest, max(leg[LEAST_RATE, i], -leg[GREATEST_RATE, i]))
         if turns == 0.0 and moves:
             margin = min(margin, slowest)
-    lack = max(0.0, asked.min_rate - margin)
+    lack = max(0.0, constraints.min_rate - margin)
     if mode == GREATEST_MARGIN:
         return cost, lack, -margin
     if mode == PLUNGE_ROTATION:
-        return cost, lack, min(abs(slope_a), abs(slope_b)) * asked.depth
+        return cost, lack, min(abs(slope_a), abs(slope_b)) * constraints.depth
     return cost, lack, travel
 
 
@@ -184,8 +184,8 @@ def is_better(cost, lack, value, than):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: ignore[no-untyped-def]
-    """The best pair of legs of the fan at every spin, whatever reverses (theory §3).
+def survey(arm, plane, psi, fan, weights, constraints, mode, branches, out):  # type: ignore[no-untyped-def]
+    """The best pair of legs of the fan at every spin, with any reversals (theory §3).
 
     Args:
         arm: `ArmGeometry`.
@@ -193,9 +193,9 @@ def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: 
         psi: spins at the target [rad], shape (K,).
         fan: `Fan`, from `follow` with slopes between the critical rates.
         weights: see `judge_pair`.
-        asked: `Constraints`.
+        constraints: `Constraints`.
         mode: see `judge_pair`.
-        branches: whether to look at a branch, shape (8,).
+        branches: whether to examine a branch, shape (8,).
         out: out, shape (8, K, 5): cost, lack and value of the best pair, inf where none can be run, and its slopes.
     """
     cs = np.empty((6, 2))
@@ -223,12 +223,12 @@ def survey(arm, plane, psi, fan, weights, asked, mode, branches, out):  # type: 
                     if least == np.inf or least > max(out[2 * posture, n, 0], out[2 * posture + 1, n, 0]) + 1e-9:
                         continue
                     a, b = fan.slopes[posture, n, x], fan.slopes[posture, n, y]
-                    cost, lack, value = judge_pair(legs[x], legs[y], a, b, weights, asked, mode)
+                    cost, lack, value = judge_pair(legs[x], legs[y], a, b, weights, constraints, mode)
                     for flip in range(2):
                         best = out[2 * posture + flip, n]
                         if (
                             branches[2 * posture + flip] and fits[x, flip] and fits[y, flip]
                             and is_better(cost, lack, value, best)
-                            and turns_fit(legs[x], legs[y], flip == 1, principal[flip], asked)
+                            and turns_fit(legs[x], legs[y], flip == 1, principal[flip], constraints)
                         ):  # fmt: skip
                             best[0], best[1], best[2], best[3], best[4] = cost, lack, value, a, b

@@ -131,7 +131,7 @@ def fields(arm, plane, posture, count, work):  # type: ignore[no-untyped-def]
         q2, q23 = -(lx * dx + lz * zz) * per_det, (ux * dx + uz * zz) * per_det
         ox, oy, oz = s23 * q1, -q23, -c23 * q1
         q6 = (c4 * ox + s4 * oy) * per_s5
-        # a joint that does not depend on the wrist is NaN with it, so that NaN in one tells of all
+        # a joint that does not depend on the wrist is NaN with it, so that NaN in one shows NaN in all
         blank = 0.0 * per_s5
         work[(THETA_S + 0) * BLOCK + n] = g1 * q1 + blank
         work[(THETA_S + 1) * BLOCK + n] = g2 * q2 + blank

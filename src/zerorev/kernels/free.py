@@ -20,11 +20,11 @@ from zerorev.kernels.pairs import take_turns, turn_choices
 from zerorev.kernels.tube import KEPT, LEAST_NODES, MAX_ROWS, WIDTH, admissible, march, workspace
 
 BACK = 0.5  # [rad] more than steps that are too long can move a joint the wrong way
-ENDS = 17  # spins looked at on an interval of the last row
+ENDS = 17  # spins examined on an interval of the last row
 
 
 @kernel
-def signs_at(arm, plane, posture, psi_t, held, room, sense):  # type: ignore[no-untyped-def]
+def signs_at(arm, plane, posture, psi_t, constraints, room, sense):  # type: ignore[no-untyped-def]
     """The signs of theta_psi at the target: which way each joint moves outwards on the leg above the critical rates.
 
     Args:
@@ -32,7 +32,7 @@ def signs_at(arm, plane, posture, psi_t, held, room, sense):  # type: ignore[no-
         plane: `TwistPlane`.
         posture: 0..3.
         psi_t: spin at the target [rad].
-        held: `Constraints`.
+        constraints: `Constraints`.
         room: as `living` takes it.
         sense: out, shape (6,).
 
@@ -44,9 +44,9 @@ def signs_at(arm, plane, posture, psi_t, held, room, sense):  # type: ignore[no-
     fields(arm, plane, posture, 1, work)
     for i in range(6):
         sense[i] = 1.0 if work[(THETA_PSI + i) * BLOCK] > 0.0 else -1.0
-    admissible(work, 1, sense, held, lo, hi, spare)
+    admissible(work, 1, sense, constraints, lo, hi, spare)
     sets_out = lo[0] <= hi[0]
-    admissible(work, 1, -sense, held, lo, hi, spare)
+    admissible(work, 1, -sense, constraints, lo, hi, spare)
     return sets_out and lo[0] <= hi[0]
 
 
@@ -58,7 +58,7 @@ def begin(tube, psi_t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tubes, rows):  # type: ignore[no-untyped-def]
+def free_depth(arm, plane, posture, psi_t, sense, constraints, grain, longest, room, tubes, rows):  # type: ignore[no-untyped-def]
     """How deep the two legs out of one point of the target line get, limits left aside.
 
     Args:
@@ -67,7 +67,7 @@ def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tu
         posture: 0..3.
         psi_t: spin at the target [rad].
         sense: out, shape (6,): see `signs_at`.
-        held: `Constraints`.
+        constraints: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         room: as `living` takes it.
@@ -77,7 +77,7 @@ def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tu
     Returns:
         the depth [m]; 0 where there are no two legs.
     """
-    if not signs_at(arm, plane, posture, psi_t, held, room, sense):
+    if not signs_at(arm, plane, posture, psi_t, constraints, room, sense):
         return 0.0
     rows[:] = 1
     depth = 0.0
@@ -90,7 +90,7 @@ def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tu
         for k in range(2):
             side = (1.0 - 2.0 * k) * sense
             rows[k] = march(
-                arm, plane, posture, side, held, grain, depth, room, tubes[k], rows[k]
+                arm, plane, posture, side, constraints, grain, depth, room, tubes[k], rows[k]
             )  # fmt: skip
             depth = min(depth, tubes[k, rows[k] - 1, 0])
         if depth < stretch or stretch >= longest:
@@ -99,7 +99,7 @@ def free_depth(arm, plane, posture, psi_t, sense, held, grain, longest, room, tu
 
 
 @kernel
-def slack_within(arm, plane, s, psi, branch, side, at_target, held):  # type: ignore[no-untyped-def]
+def slack_within(arm, plane, s, psi, branch, side, at_target, constraints):  # type: ignore[no-untyped-def]
     """How much farther the joints may move before one of them meets its limit, and how far they have come.
 
     On a leg that keeps its directions each joint only ever moves away from where it is at the target, so that the
@@ -113,7 +113,7 @@ def slack_within(arm, plane, s, psi, branch, side, at_target, held):  # type: ig
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
 
     Returns:
         the least room of a joint [rad], below 0 beyond its limit; and what all joints have moved together [rad].
@@ -125,7 +125,7 @@ def slack_within(arm, plane, s, psi, branch, side, at_target, held):  # type: ig
     slack, travel = np.inf, 0.0
     for i in range(6):
         direction = side[i] * flip_sign(arm, branch) if i == 4 else side[i]
-        room = held.upper[i] - at_target[i] if direction > 0.0 else at_target[i] - held.lower[i]
+        room = constraints.upper[i] - at_target[i] if direction > 0.0 else at_target[i] - constraints.lower[i]
         moved = direction * (angle[i] - at_target[i])
         # the whole turns that it may be off by; a joint that all but stands still may seem to have moved back
         moved -= 2.0 * np.pi * np.floor((moved + BACK) / (2.0 * np.pi))
@@ -135,7 +135,7 @@ def slack_within(arm, plane, s, psi, branch, side, at_target, held):  # type: ig
 
 
 @kernel
-def _some_within(arm, plane, row, after, share, branch, side, at_target, held):  # type: ignore[no-untyped-def]
+def _some_within(arm, plane, row, after, share, branch, side, at_target, constraints):  # type: ignore[no-untyped-def]
     """Whether some spin of a tube, a share of the way from one row to the next, is within the limits."""
     s = row[0] + share * (after[0] - row[0])
     for k in range(int(row[1])):
@@ -144,13 +144,13 @@ def _some_within(arm, plane, row, after, share, branch, side, at_target, held): 
             a, b = a + share * (after[2 + 2 * k] - a), b + share * (after[3 + 2 * k] - b)
         for n in range(LEAST_NODES):
             psi = a + (b - a) * n / (LEAST_NODES - 1)
-            if slack_within(arm, plane, s, psi, branch, side, at_target, held)[0] >= 0.0:
+            if slack_within(arm, plane, s, psi, branch, side, at_target, constraints)[0] >= 0.0:
                 return True
     return False
 
 
 @kernel
-def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):  # type: ignore[no-untyped-def]
+def depth_within(arm, plane, branch, side, at_target, constraints, finest, tube, rows):  # type: ignore[no-untyped-def]
     """How far legs get within the joint limits, given the tube of those that heed none.
 
     No leg that has passed a limit comes back within, so that what counts is where a leg ends, and the last row that
@@ -162,7 +162,7 @@ def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         finest: to which the stand-off is closed in on [m].
         tube: shape (MAX_ROWS, WIDTH).
         rows: how many it has.
@@ -171,11 +171,11 @@ def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):
         the stand-off [m].
     """
     inside, outside = 0, rows - 1
-    if _some_within(arm, plane, tube[outside], tube[outside], 0.0, branch, side, at_target, held):
+    if _some_within(arm, plane, tube[outside], tube[outside], 0.0, branch, side, at_target, constraints):
         return tube[outside, 0]
     while outside - inside > 1:
         middle = (inside + outside) // 2
-        if _some_within(arm, plane, tube[middle], tube[middle], 0.0, branch, side, at_target, held):
+        if _some_within(arm, plane, tube[middle], tube[middle], 0.0, branch, side, at_target, constraints):
             inside = middle
         else:
             outside = middle
@@ -184,7 +184,7 @@ def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):
     if row[1] == after[1]:
         while (high - low) * (after[0] - row[0]) > finest:
             middle = 0.5 * (low + high)
-            if _some_within(arm, plane, row, after, middle, branch, side, at_target, held):
+            if _some_within(arm, plane, row, after, middle, branch, side, at_target, constraints):
                 low = middle
             else:
                 high = middle
@@ -192,7 +192,7 @@ def depth_within(arm, plane, branch, side, at_target, held, finest, tube, rows):
 
 
 @kernel
-def limited_depth(arm, plane, branch, psi_t, sense, held, finest, tubes, rows, at_target):  # type: ignore[no-untyped-def]
+def limited_depth(arm, plane, branch, psi_t, sense, constraints, finest, tubes, rows, at_target):  # type: ignore[no-untyped-def]
     """How deep the two legs get within the joint limits of one branch, for the choice of turns that gets deepest.
 
     Args:
@@ -201,7 +201,7 @@ def limited_depth(arm, plane, branch, psi_t, sense, held, finest, tubes, rows, a
         branch: 0..7.
         psi_t: spin at the target [rad].
         sense: as `free_depth` leaves it.
-        held: `Constraints`.
+        constraints: `Constraints`.
         finest: to which the depth is closed in on [m].
         tubes: as `free_depth` leaves them, shape (2, MAX_ROWS, WIDTH).
         rows: of each tube, shape (2,).
@@ -215,12 +215,12 @@ def limited_depth(arm, plane, branch, psi_t, sense, held, finest, tubes, rows, a
     twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi)
     controller_angles(arm, cs, branch % 2 == 1, principal)
     deepest = 0.0
-    for choice in range(turn_choices(principal, held)):
-        take_turns(principal, held, choice, trial)
+    for choice in range(turn_choices(principal, constraints)):
+        take_turns(principal, constraints, choice, trial)
         depth = np.inf
         for k in range(2):
             side = (1.0 - 2.0 * k) * sense
-            depth = min(depth, depth_within(arm, plane, branch, side, trial, held, finest, tubes[k], rows[k]))
+            depth = min(depth, depth_within(arm, plane, branch, side, trial, constraints, finest, tubes[k], rows[k]))
         if depth > deepest:
             deepest = depth
             at_target[:] = trial
@@ -228,16 +228,16 @@ def limited_depth(arm, plane, branch, psi_t, sense, held, finest, tubes, rows, a
 
 
 @kernel
-def depth_at(arm, plane, branch, psi_t, held, grain, longest, room, tubes, rows, sense, at_target):  # type: ignore[no-untyped-def]
+def depth_at(arm, plane, branch, psi_t, constraints, grain, longest, room, tubes, rows, sense, at_target):  # type: ignore[no-untyped-def]
     """`free_depth` within the limits of one branch (`limited_depth`)."""
-    depth = free_depth(arm, plane, branch // 2, psi_t, sense, held, grain, longest, room, tubes, rows)
+    depth = free_depth(arm, plane, branch // 2, psi_t, sense, constraints, grain, longest, room, tubes, rows)
     if depth > 0.0:
-        depth = limited_depth(arm, plane, branch, psi_t, sense, held, grain.finest, tubes, rows, at_target)
+        depth = limited_depth(arm, plane, branch, psi_t, sense, constraints, grain.finest, tubes, rows, at_target)
     return depth
 
 
 @kernel
-def ends_within(arm, plane, branch, side, at_target, held, row, psi, travel):  # type: ignore[no-untyped-def]
+def ends_within(arm, plane, branch, side, at_target, constraints, row, psi, travel):  # type: ignore[no-untyped-def]
     """The spins of a row of a tube at which a leg may end, and what the joints move on the way there.
 
     Args:
@@ -246,7 +246,7 @@ def ends_within(arm, plane, branch, side, at_target, held, row, psi, travel):  #
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         at_target: joint angles at the target with their turns [rad], shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         row: of a tube, shape (WIDTH,).
         psi: out, shape (KEPT, ENDS) [rad].
         travel: out, shape (KEPT, ENDS) [rad]; inf beyond the limits, and where there is no interval.
@@ -255,13 +255,13 @@ def ends_within(arm, plane, branch, side, at_target, held, row, psi, travel):  #
     for k in range(int(row[1])):
         for n in range(ENDS):
             psi[k, n] = row[2 + 2 * k] + (row[3 + 2 * k] - row[2 + 2 * k]) * n / (ENDS - 1)
-            slack, moved = slack_within(arm, plane, row[0], psi[k, n], branch, side, at_target, held)
+            slack, moved = slack_within(arm, plane, row[0], psi[k, n], branch, side, at_target, constraints)
             if slack >= 0.0:
                 travel[k, n] = moved
 
 
 @kernel
-def value_at(arm, plane, branch, psi_t, held, grain, depth, mode, room, tubes, rows, sense, at_target):  # type: ignore[no-untyped-def]
+def value_at(arm, plane, branch, psi_t, constraints, grain, depth, mode, room, tubes, rows, sense, at_target):  # type: ignore[no-untyped-def]
     """What the best two legs of a given depth are worth; inf where there are none.
 
     Args:
@@ -269,7 +269,7 @@ def value_at(arm, plane, branch, psi_t, held, grain, depth, mode, room, tubes, r
         plane: `TwistPlane`.
         branch: 0..7.
         psi_t: spin at the target [rad].
-        held: `Constraints`.
+        constraints: `Constraints`.
         grain: `Grain`.
         depth: [m].
         mode: TRAVEL: what the joints move in all; PLUNGE_ROTATION: what the tool turns on the leg on which it turns
@@ -281,18 +281,18 @@ def value_at(arm, plane, branch, psi_t, held, grain, depth, mode, room, tubes, r
         at_target: out, shape (6,): the joints at the target with the best choice of turns [rad].
     """
     value = np.inf
-    if free_depth(arm, plane, branch // 2, psi_t, sense, held, grain, depth, room, tubes, rows) < depth:
+    if free_depth(arm, plane, branch // 2, psi_t, sense, constraints, grain, depth, room, tubes, rows) < depth:
         return value
     cs, theta_s, theta_psi = np.empty((6, 2)), np.empty(6), np.empty(6)
     principal, trial, psi, travel = np.empty(6), np.empty(6), np.empty((KEPT, ENDS)), np.empty((KEPT, ENDS))
     twist_field(arm, plane, 0.0, psi_t, branch // 2, cs, theta_s, theta_psi)
     controller_angles(arm, cs, branch % 2 == 1, principal)
-    for choice in range(turn_choices(principal, held)):
-        take_turns(principal, held, choice, trial)
+    for choice in range(turn_choices(principal, constraints)):
+        take_turns(principal, constraints, choice, trial)
         total, turn = 0.0, np.inf
         for k in range(2):
             side = (1.0 - 2.0 * k) * sense
-            ends_within(arm, plane, branch, side, trial, held, tubes[k, rows[k] - 1], psi, travel)
+            ends_within(arm, plane, branch, side, trial, constraints, tubes[k, rows[k] - 1], psi, travel)
             total += travel.min()
             for n in range(KEPT * ENDS):
                 if travel.flat[n] < np.inf:
@@ -305,19 +305,19 @@ def value_at(arm, plane, branch, psi_t, held, grain, depth, mode, room, tubes, r
 
 
 @kernel
-def scan(arm, plane, psi, branches, held, grain, longest, worth, out):  # type: ignore[no-untyped-def]
+def scan(arm, plane, psi, branches, constraints, grain, longest, worth, out):  # type: ignore[no-untyped-def]
     """Depths along the target line in all branches.
 
     Args:
         arm: `ArmGeometry`.
         plane: `TwistPlane`.
         psi: spins at the target [rad], shape (K,).
-        branches: which of the eight to look at, shape (8,).
-        held: `Constraints`.
+        branches: which of the eight to examine, shape (8,).
+        constraints: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         worth: share of the greatest depth below which the limits are not looked into.
-        out: out, shape (8, K): depth [m]; 0 where it is not worth a look.
+        out: out, shape (8, K): depth [m]; 0 where it is not worth examining.
     """
     count = psi.shape[0]
     room, tubes, rows = workspace(), np.empty((2, MAX_ROWS, WIDTH)), np.empty(2, np.int64)
@@ -326,7 +326,7 @@ def scan(arm, plane, psi, branches, held, grain, longest, worth, out):  # type: 
         if branches[2 * posture] or branches[2 * posture + 1]:
             for n in range(count):
                 depths[posture * count + n] = free_depth(
-                    arm, plane, posture, psi[n], sense, held, grain, longest, room, tubes, rows
+                    arm, plane, posture, psi[n], sense, constraints, grain, longest, room, tubes, rows
                 )  # fmt: skip
     out[:] = 0.0
     deepest = 0.0
@@ -338,6 +338,6 @@ def scan(arm, plane, psi, branches, held, grain, longest, worth, out):  # type: 
         for branch in range(2 * posture, 2 * posture + 2):
             if branches[branch]:
                 out[branch, n] = depth_at(
-                    arm, plane, branch, psi[n], held, grain, longest, room, tubes, rows, sense, at_target
+                    arm, plane, branch, psi[n], constraints, grain, longest, room, tubes, rows, sense, at_target
                 )  # fmt: skip
                 deepest = max(deepest, out[branch, n])

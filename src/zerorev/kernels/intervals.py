@@ -295,5 +295,5 @@ def cos_sin_over(low, high, cosine, sine):  # type: ignore[no-untyped-def]
 
 @kernel
 def _passes(a, b, at):  # type: ignore[no-untyped-def]
-    """Whether an angle lies between two others, up to whole turns, with a little to spare."""
+    """Whether an angle lies between two others, up to whole turns, with a small tolerance."""
     return np.floor((b - at + 1e-12) * (0.5 / np.pi)) * (2.0 * np.pi) + at >= a - 1e-12

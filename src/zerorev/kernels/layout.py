@@ -71,9 +71,9 @@ class BoundRules(NamedTuple):
         upper: likewise.
         flips: which wrist flips count, shape (2,).
         weights: what a reversal of each joint costs, shape (6,).
-        most_cost: what a motion may cost at the most.
+        most_cost: what a motion may cost at most.
         least_weight: of any joint.
-        looks: at how many stand-offs a box is examined at first: 4, or 8.
+        samples: at how many stand-offs a box is examined at first: 4, or 8.
         aspect: width of a box in twist as a share of its width in spin, to which slopes are halved.
     """
 
@@ -86,5 +86,5 @@ class BoundRules(NamedTuple):
     weights: Array
     most_cost: float
     least_weight: float
-    looks: int
+    samples: int
     aspect: float = 1.0

@@ -1,7 +1,7 @@
 """The best leg on a side of the critical rates: one dimension, the slope (theory §3).
 
 Lengths in m, angles in rad, rates outwards in rad/m. No kernel raises.
-`asked` is a `layout.Constraints` throughout.
+`constraints` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
 
 
 @lean
-def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-untyped-def]
-    """Slopes worth a look on one side of the critical rates of the joints to keep.
+def slope_candidates(kappa, keep, side, psi_t, constraints, out):  # type: ignore[no-untyped-def]
+    """Slopes worth examining on one side of the critical rates of the joints to keep.
 
     Args:
         kappa: critical rates at the target [rad/m], shape (6,).
         keep: whether a joint must keep its direction, shape (6,).
         side: 1 above, -1 below.
         psi_t: spin at the target [rad].
-        asked: `Constraints`, for the steepest slope and the bound on the spin.
+        constraints: `Constraints`, for the steepest slope and the bound on the spin.
         out: out, shape (MAX_SLOPES,): slopes in order away from the critical rates, the outermost of which, or the
             bound, is the first.
 
@@ -39,10 +39,10 @@ def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-u
         how many slopes were written.
     """
     # slopes are measured along the side: side * slope, from `nearest` to `farthest`
-    nearest, farthest = -asked.steepest, asked.steepest
-    if asked.psi_bound > 0.0:
-        nearest = max(nearest, (-asked.psi_bound - side * psi_t) / asked.depth)
-        farthest = min(farthest, (asked.psi_bound - side * psi_t) / asked.depth)
+    nearest, farthest = -constraints.steepest, constraints.steepest
+    if constraints.psi_bound > 0.0:
+        nearest = max(nearest, (-constraints.psi_bound - side * psi_t) / constraints.depth)
+        farthest = min(farthest, (constraints.psi_bound - side * psi_t) / constraints.depth)
     bracketed = False
     for i in range(6):
         if keep[i] and np.isfinite(kappa[i]):
@@ -78,7 +78,7 @@ def slope_candidates(kappa, keep, side, psi_t, asked, out):  # type: ignore[no-u
 
 
 @lean
-def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+def try_slope(arm, plane, branch, psi_t, slope, demands, constraints, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """Follow one slope and remember it where it is the best so far.
 
     Args:
@@ -87,8 +87,8 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
         branch: 0..7.
         psi_t: spin at the target [rad].
         slope: twist rate [rad/m].
-        held: what the leg is held to at this target: (sense, keep, at_target), see `judge_leg`.
-        asked: `Constraints`; limits that are infinite are not looked at.
+        demands: what the leg must do at this target: (sense, keep, at_target), see `judge_leg`.
+        constraints: `Constraints`; limits that are infinite are not examined.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
         work: room for `fields`.
@@ -99,18 +99,18 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
         excess: by how much it does [rad/m]; negative where it does not, -inf out of reach.
         margin: see `judge_leg`; beyond a limit, less than asked; -inf out of reach.
     """
-    if asked.turn_inside and asked.lower[0] > -np.inf:
-        margin, slack, travel = _follow(arm, plane, branch, psi_t, slope, held, asked, nodes, work)
+    if constraints.turn_inside and constraints.lower[0] > -np.inf:
+        margin, slack, travel = _follow(arm, plane, branch, psi_t, slope, demands, constraints, nodes, work)
     else:
-        margin, slack, travel = weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work)
+        margin, slack, travel = weigh_leg(arm, plane, branch, psi_t, slope, demands, constraints, nodes, work)
     if margin == -np.inf:
         return np.inf, -np.inf, -np.inf
     if slack < 0.0:
         # as if it lacked margin: so there is a way to climb back within the limits
-        margin = min(margin, asked.min_rate + slack / asked.depth)
+        margin = min(margin, constraints.min_rate + slack / constraints.depth)
     best[2] = max(best[2], margin)
-    if margin < asked.min_rate:
-        return np.inf, margin - asked.min_rate, margin
+    if margin < constraints.min_rate:
+        return np.inf, margin - constraints.min_rate, margin
     cost = travel
     if mode == GREATEST_MARGIN:
         cost = -margin
@@ -118,20 +118,20 @@ def try_slope(arm, plane, branch, psi_t, slope, held, asked, mode, nodes, work, 
         cost = abs(slope)
     if cost < best[0]:
         best[0], best[1] = cost, slope
-    return cost, min(margin - asked.min_rate, slack / asked.depth), margin
+    return cost, min(margin - constraints.min_rate, slack / constraints.depth), margin
 
 
 @kernel
-def _follow(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # type: ignore[no-untyped-def]
+def _follow(arm, plane, branch, psi_t, slope, demands, constraints, nodes, work):  # type: ignore[no-untyped-def]
     """Margin (-inf out of reach), slack and travel of a leg whose joints may come nearest to a limit anywhere."""
     leg = np.empty((ROWS, 6))
-    if not trace_leg(arm, plane, branch, psi_t, slope, asked.depth, nodes, work, leg):
+    if not trace_leg(arm, plane, branch, psi_t, slope, constraints.depth, nodes, work, leg):
         return -np.inf, -np.inf, np.inf
-    return judge_leg(leg, held[0], held[1], held[2], asked.depth, asked)
+    return judge_leg(leg, demands[0], demands[1], demands[2], constraints.depth, constraints)
 
 
 @kernel
-def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+def best_leg(arm, plane, branch, psi_t, side, kappa, demands, constraints, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """The best slope on one side of the critical rates (theory §3).
 
     The slopes that keep margin and limits form a few bounded intervals; every interval's ends are located by a root
@@ -145,19 +145,19 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
         psi_t: spin at the target [rad].
         side: 1 above the critical rates, -1 below.
         kappa: critical rates at the target, shape (6,).
-        held: see `try_slope`.
-        asked: `Constraints`.
+        demands: see `try_slope`.
+        constraints: `Constraints`.
         mode: TRAVEL, GREATEST_MARGIN or PLUNGE_ROTATION.
         nodes: points on a leg.
         work: room for `fields`.
-        best: out, shape (3,): least cost (inf where no slope will do), its slope, and the greatest margin seen (-inf
-            where none can be run).
+        best: out, shape (3,): least cost (inf where no slope is admissible), its slope, and the greatest margin seen
+            (-inf where none can be run).
     """
     slopes, ceiling, estimate = np.empty(MAX_SLOPES), np.empty(MAX_SLOPES), np.empty(MAX_SLOPES)
-    count = slope_candidates(kappa, held[1], side, psi_t, asked, slopes)
+    count = slope_candidates(kappa, demands[1], side, psi_t, constraints, slopes)
     best[:] = np.inf, np.nan, -np.inf
     ends = np.empty((MAX_SLOPES, 6))
-    sift(arm, plane, branch, psi_t, slopes, count, held[0], held[1], asked, work, ceiling, estimate, ends)
+    sift(arm, plane, branch, psi_t, slopes, count, demands[0], demands[1], constraints, work, ceiling, estimate, ends)
     if mode == GREATEST_MARGIN:
         estimate[:count] = -ceiling[:count]
     elif mode == PLUNGE_ROTATION:
@@ -167,7 +167,7 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
     first = 0
     while mode != GREATEST_MARGIN and first < count:
         end = first
-        while end < count and ceiling[end] >= asked.min_rate:
+        while end < count and ceiling[end] >= constraints.min_rate:
             end += 1
         if end > first:
             least = np.inf
@@ -177,12 +177,12 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
                 for k in order_of(estimate[first:end]):
                     j = first + k
                     cost, excess, _ = try_slope(
-                        arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best
+                        arm, plane, branch, psi_t, slopes[j], demands, constraints, mode, nodes, work, best
                     )
                     if cost < np.inf:
                         _settle(
-                            arm, plane, branch, psi_t, slopes[:count], estimate, j, cost, excess, held, asked, mode,
-                            nodes, work, best,
+                            arm, plane, branch, psi_t, slopes[:count], estimate, j, cost, excess, demands, constraints,
+                            mode, nodes, work, best,
                         )  # fmt: skip
                         break
         first = end + 1
@@ -196,34 +196,38 @@ def best_leg(arm, plane, branch, psi_t, side, kappa, held, asked, mode, nodes, w
     for j in order_of(estimate[:count]):
         if ceiling[j] <= peak_margin:
             break
-        margin = try_slope(arm, plane, branch, psi_t, slopes[j], held, asked, mode, nodes, work, best)[2]
+        margin = try_slope(arm, plane, branch, psi_t, slopes[j], demands, constraints, mode, nodes, work, best)[2]
         if margin > peak_margin:
             peak, peak_margin = j, margin
     if peak < 0:
         return
     a, b = slopes[max(peak - 1, 0)], slopes[min(peak + 1, count - 1)]
-    _golden(arm, plane, branch, psi_t, a, b, True, held, asked, mode, nodes, work, best)
+    _golden(arm, plane, branch, psi_t, a, b, True, demands, constraints, mode, nodes, work, best)
     if mode == GREATEST_MARGIN or best[0] == np.inf:
         return
     # a thin interval was found: its ends lie on either side of it, before the next candidates
     found = best[1]
-    excess = try_slope(arm, plane, branch, psi_t, found, held, asked, mode, nodes, work, best)[1]
+    excess = try_slope(arm, plane, branch, psi_t, found, demands, constraints, mode, nodes, work, best)[1]
     for end in (a, b):
-        _interval_end(arm, plane, branch, psi_t, found, excess, end, -np.inf, held, asked, mode, nodes, work, best)
+        _interval_end(
+            arm, plane, branch, psi_t, found, excess, end, -np.inf, demands, constraints, mode, nodes, work, best
+        )
 
 
 @lean
-def _settle(arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
-    """From a candidate that will do, go to where the cost is least: the end of its interval, or a dip inside."""
+def _settle(  # type: ignore[no-untyped-def]
+    arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, demands, constraints, mode, nodes, work, best
+):
+    """From an admissible candidate, go to where the cost is least: the end of its interval, or a dip inside."""
     low, high = slopes[j], slopes[j]
     for k in (-1, 1):
         while 0 <= j + k < slopes.shape[0]:
             at_other, lacks, _ = try_slope(
-                arm, plane, branch, psi_t, slopes[j + k], held, asked, mode, nodes, work, best
+                arm, plane, branch, psi_t, slopes[j + k], demands, constraints, mode, nodes, work, best
             )
             if not at_other < cost:
                 break
-            # the rough look was mistaken about which is the cheaper
+            # the rough pass was mistaken about which is the cheaper
             low, j, cost, excess = slopes[j], j + k, at_other, lacks
         if not 0 <= j + k < slopes.shape[0]:
             end = slopes[j]
@@ -232,52 +236,56 @@ def _settle(arm, plane, branch, psi_t, slopes, estimate, j, cost, excess, held, 
         else:
             # the cost may fall towards the end of the interval, or dip on the way there
             onward = slopes[j] + 0.1 * (slopes[j + k] - slopes[j])
-            falls = try_slope(arm, plane, branch, psi_t, onward, held, asked, mode, nodes, work, best)[0] < cost
+            falls = (
+                try_slope(arm, plane, branch, psi_t, onward, demands, constraints, mode, nodes, work, best)[0] < cost
+            )
             if not (falls or estimate[j + k] < estimate[j]):
                 end = onward
             else:
                 end, at_end = _interval_end(
-                    arm, plane, branch, psi_t, slopes[j], excess, slopes[j + k], lacks, held, asked, mode, nodes, work,
-                    best,
+                    arm, plane, branch, psi_t, slopes[j], excess, slopes[j + k], lacks, demands, constraints, mode,
+                    nodes, work, best,
                 )  # fmt: skip
                 # from the end inwards the cost may still fall
                 probe = end + 0.1 * (slopes[j] - end)
-                at_probe, _, _ = try_slope(arm, plane, branch, psi_t, probe, held, asked, mode, nodes, work, best)
+                at_probe, _, _ = try_slope(
+                    arm, plane, branch, psi_t, probe, demands, constraints, mode, nodes, work, best
+                )
                 if at_end < cost and at_end <= at_probe:
                     return
         if k < 0:
             low = end
         else:
             high = end
-    _golden(arm, plane, branch, psi_t, low, high, False, held, asked, mode, nodes, work, best)
+    _golden(arm, plane, branch, psi_t, low, high, False, demands, constraints, mode, nodes, work, best)
 
 
 @lean
-def _golden(arm, plane, branch, psi_t, a, b, climb, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+def _golden(arm, plane, branch, psi_t, a, b, climb, demands, constraints, mode, nodes, work, best):  # type: ignore[no-untyped-def]
     """Golden section between two slopes, up to the greatest margin or down to the least cost."""
     x, y = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-    at_x = try_slope(arm, plane, branch, psi_t, x, held, asked, mode, nodes, work, best)
-    at_y = try_slope(arm, plane, branch, psi_t, y, held, asked, mode, nodes, work, best)
+    at_x = try_slope(arm, plane, branch, psi_t, x, demands, constraints, mode, nodes, work, best)
+    at_y = try_slope(arm, plane, branch, psi_t, y, demands, constraints, mode, nodes, work, best)
     at_a, at_b = np.nan, np.nan
     for _ in range(GOLDEN_STEPS):
         if abs(b - a) < ROOT_TOLERANCE:
             break
         if climb and mode != GREATEST_MARGIN:
             # enough is enough, and where too little can be gained it will not be
-            if best[2] >= asked.min_rate:
+            if best[2] >= constraints.min_rate:
                 break
-            if best[2] + most_gained(a, x, y, b, at_a, at_x[2], at_y[2], at_b) < asked.min_rate:
+            if best[2] + most_gained(a, x, y, b, at_a, at_x[2], at_y[2], at_b) < constraints.min_rate:
                 break
         if at_x[2] >= at_y[2] if climb else at_x[0] <= at_y[0]:
             b, at_b = y, at_y[2]
             y, at_y = x, at_x
             x = b - GOLDEN * (b - a)
-            at_x = try_slope(arm, plane, branch, psi_t, x, held, asked, mode, nodes, work, best)
+            at_x = try_slope(arm, plane, branch, psi_t, x, demands, constraints, mode, nodes, work, best)
         else:
             a, at_a = x, at_x[2]
             x, at_x = y, at_y
             y = a + GOLDEN * (b - a)
-            at_y = try_slope(arm, plane, branch, psi_t, y, held, asked, mode, nodes, work, best)
+            at_y = try_slope(arm, plane, branch, psi_t, y, demands, constraints, mode, nodes, work, best)
 
 
 @lean
@@ -297,11 +305,13 @@ def most_gained(a, x, y, b, at_a, at_x, at_y, at_b):  # type: ignore[no-untyped-
 
 
 @lean
-def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held, asked, mode, nodes, work, best):  # type: ignore[no-untyped-def]
+def _interval_end(  # type: ignore[no-untyped-def]
+    arm, plane, branch, psi_t, inside, f_in, outside, f_out, demands, constraints, mode, nodes, work, best
+):
     """Locate where a slope just stops doing: regula falsi (Illinois), bisection where one side cannot be run.
 
     Returns:
-        the last slope that will do, and its cost; inf where that is `inside` itself.
+        the last admissible slope, and its cost; inf where that is `inside` itself.
     """
     kept = 0
     at_end, at_excess = np.inf, f_in
@@ -312,7 +322,9 @@ def _interval_end(arm, plane, branch, psi_t, inside, f_in, outside, f_out, held,
         if f_out > -np.inf and f_in > 0.0:
             share = min(max(f_in / (f_in - f_out), 1e-3), 1.0 - 1e-3)
         middle = inside + share * (outside - inside)
-        cost, excess, _margin = try_slope(arm, plane, branch, psi_t, middle, held, asked, mode, nodes, work, best)
+        cost, excess, _margin = try_slope(
+            arm, plane, branch, psi_t, middle, demands, constraints, mode, nodes, work, best
+        )
         if cost < np.inf:
             inside, f_in, at_end, at_excess = middle, excess, cost, excess
             if kept > 0:

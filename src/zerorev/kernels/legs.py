@@ -6,7 +6,7 @@ to lie above the critical rates of all joints that must not reverse, the other b
 its own: along the one line of slopes u on its side (`kernels.leg_search`).
 
 Lengths in m, angles in rad, rates outwards in rad/m; controller angles. No kernel raises.
-`asked` is a `layout.Constraints` throughout.
+`constraints` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import controller_angles, flip_sign, twist_field
 from zerorev.kernels.field import BLOCK, PSI, STANDOFF, THETA_PSI, THETA_S, fields
 
-# rows of a traced leg, one column a joint
+# rows of a traced leg, one column per joint
 LEAST_RATE, GREATEST_RATE, LEAST_ANGLE, GREATEST_ANGLE, END_ANGLE, MOVED, TURNS, TARGET_RATE = range(8)
 ROWS = 8
 # what makes one leg better than another
@@ -37,7 +37,7 @@ def trace_leg(arm, plane, branch, psi_t, slope, depth, nodes, work, leg):  # typ
         psi_t: spin at the target [rad].
         slope: twist rate u [rad/m].
         depth: length of the leg [m].
-        nodes: how many points are looked at, both ends among them.
+        nodes: how many points are examined, both ends among them.
         work: room for `fields`.
         leg: out, shape (ROWS, 6): least and greatest outward rate; least and greatest angle, and the one at the outer
             end, relative to the target; angle moved; how often the joint turns round; outward rate at the target.
@@ -131,7 +131,7 @@ def joint_travel(leg, i):  # type: ignore[no-untyped-def]
 
 
 @lean
-def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-untyped-def]
+def judge_leg(leg, sense, keep, at_target, depth, constraints):  # type: ignore[no-untyped-def]
     """Margin, slack to the limits, and travel of a traced leg.
 
     Args:
@@ -141,7 +141,7 @@ def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-unt
             leg unless `asked.turn_inside`.
         at_target: joint angles at the target with their turns, shape (6,).
         depth: length of the leg [m].
-        asked: `Constraints`.
+        constraints: `Constraints`.
 
     Returns:
         margin: least rate in the wanted sense over the joints to keep [rad/m], by the rule asked for.
@@ -153,17 +153,17 @@ def judge_leg(leg, sense, keep, at_target, depth, asked):  # type: ignore[no-unt
         least, greatest = leg[LEAST_RATE, i], leg[GREATEST_RATE, i]
         end = leg[END_ANGLE, i]
         travel += joint_travel(leg, i)
-        slack = min(slack, at_target[i] + leg[LEAST_ANGLE, i] - asked.lower[i])
-        slack = min(slack, asked.upper[i] - at_target[i] - leg[GREATEST_ANGLE, i])
+        slack = min(slack, at_target[i] + leg[LEAST_ANGLE, i] - constraints.lower[i])
+        slack = min(slack, constraints.upper[i] - at_target[i] - leg[GREATEST_ANGLE, i])
         if least >= -NIL and greatest <= NIL:
             continue  # a joint that does not move does not reverse
         if keep[i]:
             pointwise = least if sense[i] > 0.0 else -greatest
-            if asked.mean_rule:
+            if constraints.mean_rule:
                 # the mean has to reach the threshold, and no point may turn round
-                margin = min(margin, sense[i] * end / depth, pointwise + asked.min_rate)
+                margin = min(margin, sense[i] * end / depth, pointwise + constraints.min_rate)
             else:
                 margin = min(margin, pointwise)
-        elif not asked.turn_inside:
-            margin = min(margin, max(least, -greatest) + asked.min_rate)
+        elif not constraints.turn_inside:
+            margin = min(margin, max(least, -greatest) + constraints.min_rate)
     return margin, slack, travel

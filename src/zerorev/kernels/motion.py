@@ -20,7 +20,7 @@ SAMPLES_PER_LEG, SAMPLES_PER_SEGMENT = 200, 32  # at least
 FINER = 16  # into how many steps one is divided beside which a joint comes nearest to rest
 TIMES_FINER = 3  # so often: a joint that turns round and back within 1/800,000 of a leg is seen
 ROOT_POINTS, ROOT_TIMES = 33, 9  # each 32 times closer, from a sample's distance to the last bits
-RISE = 1e-6  # relative: a joint of constant speed does not dip, whatever its last digits do
+RISE = 1e-6  # relative: a joint of constant speed does not dip, regardless of its last digits
 
 
 @lean
@@ -70,7 +70,7 @@ def spread(standoff, corner, per_leg, least):  # type: ignore[no-untyped-def]
 
 @lean
 def dips(r, n, same_before, same_after, nil):  # type: ignore[no-untyped-def]
-    """Whether any joint is slower at a sample than at both of its neighbours on the segment; NaN is no neighbour."""
+    """Whether any joint is slower at a sample than at both of its neighbours on the segment; NaN is not a neighbour."""
     for i in range(6):
         speed = abs(r[n, i])
         before = abs(r[n - 1, i]) if same_before else np.inf

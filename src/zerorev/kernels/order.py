@@ -1,6 +1,6 @@
 """The order of a few numbers.
 
-`np.sort` and `np.argsort` will not do in a kernel: Numba makes their inner functions anew in each process and names
+`np.sort` and `np.argsort` are not usable in a kernel: Numba makes their inner functions again in each process and names
 them by a count of that process. Where kernels that two processes have cached come together in a third, one name may
 stand for both, so that one sorts numbers where it should have sorted their places, and memory is overwritten.
 """

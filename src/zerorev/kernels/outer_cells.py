@@ -73,7 +73,7 @@ def tabulate(arm, plane, posture, formulas, rules, grid, slab, column, flips, ra
         for i in range(6):
             for lane in range(LANES):
                 critical = -work[(THETA_S + i) * BLOCK + lane] / work[(THETA_PSI + i) * BLOCK + lane]
-                # any slope will do: this one makes the enclosure tight
+                # any slope is admissible: this one makes the enclosure tight
                 critical = critical if abs(critical) < np.inf else 0.0
                 critical = min(max(critical, -rules.steepest), rules.steepest)
                 _fill(rows, formulas.slope[i], lane, critical, critical)

@@ -7,7 +7,7 @@ segment runs. So viable sets (`kernels.viable`) are made for legs of straight se
 within a corridor: the viable sets of all curves. The deepest pair of such legs takes a search along the depth, and no
 programme over all breakpoints.
 
-Lengths in m, angles in rad, slopes outwards in rad/m. `held` is a `layout.Constraints`. No kernel raises.
+Lengths in m, angles in rad, slopes outwards in rad/m. `constraints` is a `layout.Constraints`. No kernel raises.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from zerorev.kernels.reach import KEPT, carry
 from zerorev.kernels.tube import admissible
 from zerorev.kernels.viable import pair_meets
 
-LOOKS = 5  # points of a segment
+SAMPLES = 5  # points of a segment
 TRIALS = 14  # slopes tried for each segment, at most
 AGREES = 3e-4  # relative, of a slope
 AWAY = 0.02  # from the last slope that is admissible, towards the middle of those that are
@@ -30,7 +30,7 @@ INNER = np.array([0.0, 0.03, 0.1, 0.3, 0.6])  # of an interval: how far from its
 
 
 @kernel
-def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, high, shares, room, slopes):  # type: ignore[no-untyped-def]
+def slopes_along(arm, plane, posture, side, constraints, s, length, psi, wants, low, high, shares, room, slopes):  # type: ignore[no-untyped-def]
     """The greatest or least slope that is admissible all along a segment.
 
     Args:
@@ -38,14 +38,14 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         s: where the segments begin [m].
         length: how far they lead outwards; inwards, if it is below 0 [m].
-        psi: spins where they begin [rad], shape (M,), at most BLOCK / LOOKS.
+        psi: spins where they begin [rad], shape (M,), at most BLOCK / SAMPLES.
         wants: 1 for the greatest, -1 for the least, shape (M,).
         low: least slopes in question, shape (M,).
         high: greatest slopes in question, shape (M,).
-        shares: where on a segment it is examined, 0 to 1, both among them, shape (LOOKS,).
+        shares: where on a segment it is examined, 0 to 1, both among them, shape (SAMPLES,).
         room: what `kernels.tube.workspace` returns.
         slopes: out, shape (M,); NaN where there is none.
     """
@@ -58,7 +58,7 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
     for m in range(count):
         work[STANDOFF * BLOCK + m], work[PSI * BLOCK + m] = s, psi[m]
     fields(arm, plane, posture, count, work)
-    admissible(work, count, side, held, lo, hi, spare)
+    admissible(work, count, side, constraints, lo, hi, spare)
     left = 0
     for m in range(count):
         a, b = max(low[m], lo[m]), min(high[m], hi[m])
@@ -70,17 +70,17 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
             break
         for m in range(count):
             slope = 0.0 if np.isnan(tried[m]) else wants[m] * tried[m]
-            for q in range(LOOKS):
-                work[STANDOFF * BLOCK + m * LOOKS + q] = s + shares[q] * length
-                work[PSI * BLOCK + m * LOOKS + q] = psi[m] + shares[q] * length * slope
-        fields(arm, plane, posture, count * LOOKS, work)
-        admissible(work, count * LOOKS, side, held, lo, hi, spare)
+            for q in range(SAMPLES):
+                work[STANDOFF * BLOCK + m * SAMPLES + q] = s + shares[q] * length
+                work[PSI * BLOCK + m * SAMPLES + q] = psi[m] + shares[q] * length * slope
+        fields(arm, plane, posture, count * SAMPLES, work)
+        admissible(work, count * SAMPLES, side, constraints, lo, hi, spare)
         for m in range(count):
             here = tried[m]
             if np.isnan(here):
                 continue
             least, most = -np.inf, np.inf
-            for q in range(m * LOOKS, (m + 1) * LOOKS):
+            for q in range(m * SAMPLES, (m + 1) * SAMPLES):
                 least, most = max(least, lo[q]), min(most, hi[q])
             if wants[m] < 0.0:
                 least, most = -most, -least
@@ -113,7 +113,7 @@ def slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, hi
 
 
 @kernel
-def leg_back(arm, plane, posture, side, held, standoff, shares, room, spins):  # type: ignore[no-untyped-def]
+def leg_back(arm, plane, posture, side, constraints, standoff, shares, room, spins):  # type: ignore[no-untyped-def]
     """The spins at the breakpoints from which a leg of straight segments gets to its outer end.
 
     Args:
@@ -121,7 +121,7 @@ def leg_back(arm, plane, posture, side, held, standoff, shares, room, spins):  #
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         standoff: of the breakpoints, outwards [m], shape (N + 1,).
         shares: see `slopes_along`.
         room: what `kernels.tube.workspace` returns.
@@ -146,7 +146,7 @@ def leg_back(arm, plane, posture, side, held, standoff, shares, room, spins):  #
                     k = 2 * t + e
                     wants[k], psi[k] = 1.0 - 2.0 * e, ends[e] + INNER[t] * apart[e]
                     low[k], high[k] = (spins[n, 1] - psi[k]) / length, (spins[n, 0] - psi[k]) / length
-            slopes_along(arm, plane, posture, side, held, s, length, psi, wants, low, high, shares, room, slopes)
+            slopes_along(arm, plane, posture, side, constraints, s, length, psi, wants, low, high, shares, room, slopes)
             least, most = 0, 0
             for t in range(tries):
                 there = psi[2 * t] + length * slopes[2 * t]
@@ -171,7 +171,7 @@ def leg_back(arm, plane, posture, side, held, standoff, shares, room, spins):  #
 
 
 @kernel
-def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi):  # type: ignore[no-untyped-def]
+def leg_out(arm, plane, posture, side, constraints, standoff, shares, room, spins, psi):  # type: ignore[no-untyped-def]
     """A leg of straight segments through viable spins, as far from their ends as can be.
 
     Args:
@@ -179,7 +179,7 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         standoff: of the breakpoints, outwards [m], shape (N + 1,).
         shares: see `slopes_along`.
         room: what `kernels.tube.workspace` returns.
@@ -197,11 +197,11 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
         slack = AGREES * (abs(spins[n + 1, 0] - psi[n]) + abs(spins[n + 1, 1] - psi[n]) + length)
         here[:] = psi[n]
         a, b = spins[n + 1, 0] - slack, spins[n + 1, 1] + slack
-        if held.psi_bound > 0.0:
-            a, b = max(a, -held.psi_bound), min(b, held.psi_bound)
+        if constraints.psi_bound > 0.0:
+            a, b = max(a, -constraints.psi_bound), min(b, constraints.psi_bound)
         low[:], high[:] = (a - psi[n]) / length, (b - psi[n]) / length
         slopes_along(
-            arm, plane, posture, side, held, standoff[n], length, here, wants, low, high, shares, room, slopes
+            arm, plane, posture, side, constraints, standoff[n], length, here, wants, low, high, shares, room, slopes
         )  # fmt: skip
         most = slopes[0] if not np.isnan(slopes[0]) else slopes[1]
         least = slopes[1] if not np.isnan(slopes[1]) else most
@@ -214,7 +214,7 @@ def leg_out(arm, plane, posture, side, held, standoff, shares, room, spins, psi)
 
 
 @kernel
-def follow(arm, plane, branch, side, held, grain, tube, rows, psi_t, room, path, corridor):  # type: ignore[no-untyped-def]
+def follow(arm, plane, branch, side, constraints, grain, tube, rows, psi_t, room, path, corridor):  # type: ignore[no-untyped-def]
     """A leg through the middle of viable sets, and the intervals of these in which it runs.
 
     Args:
@@ -222,7 +222,7 @@ def follow(arm, plane, branch, side, held, grain, tube, rows, psi_t, room, path,
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         grain: `Grain`.
         tube: stand-offs, counts and sets as left by `kernels.viable.viable`.
         rows: how many it has.
@@ -237,7 +237,7 @@ def follow(arm, plane, branch, side, held, grain, tube, rows, psi_t, room, path,
         reached[0] = path[r - 1] if r > 0 else psi_t
         if r > 0:
             s = standoff[r - 1]
-            carry(arm, plane, branch // 2, side, held, s, standoff[r] - s, grain.turn, reached, 1, room)
+            carry(arm, plane, branch // 2, side, constraints, s, standoff[r] - s, grain.turn, reached, 1, room)
         widest = -np.inf
         for k in range(counts[r]):
             a, b = max(reached[0, 0], sets[r, k, 0]), min(reached[0, 1], sets[r, k, 1])
@@ -265,8 +265,8 @@ def _between(standoff, known, rows, corridor, psi_bound, spins):  # type: ignore
 
 @kernel
 def pair_width(  # type: ignore[no-untyped-def]
-    arm, plane, branch, sense, held, guarded, limited, grain, depth, part, shares, room, tubes, rows, viable_tubes,
-    viable_rows, spins, overlap,
+    arm, plane, branch, sense, constraints, guarded, limited, grain, depth, part, shares, room, tubes, rows,
+    viable_tubes, viable_rows, spins, overlap,
 ):  # fmt: skip
     """From how wide an interval of the target line two legs of straight segments get to a depth.
 
@@ -276,7 +276,7 @@ def pair_width(  # type: ignore[no-untyped-def]
         branch: 0..7.
         sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,); the second leg has the
             opposite ones.
-        held: `Constraints`.
+        constraints: `Constraints`.
         guarded: the same with a little more asked of the joints, to which the segments are held.
         limited: whether joint limits are heeded.
         grain: `Grain`.
@@ -295,7 +295,20 @@ def pair_width(  # type: ignore[no-untyped-def]
         its width [rad], below 0 where the two sides miss each other by that much; -inf where a leg has no way.
     """
     if not pair_meets(
-        arm, plane, branch, sense, held, limited, grain, depth, room, tubes, rows, viable_tubes, viable_rows, overlap
+        arm,
+        plane,
+        branch,
+        sense,
+        constraints,
+        limited,
+        grain,
+        depth,
+        room,
+        tubes,
+        rows,
+        viable_tubes,
+        viable_rows,
+        overlap,
     ):
         return -np.inf
     psi_t = 0.5 * (overlap[0] + overlap[1])
@@ -303,8 +316,8 @@ def pair_width(  # type: ignore[no-untyped-def]
     for k in range(2):
         side, last = (1.0 - 2.0 * k) * sense, viable_rows[k]
         tube = viable_tubes[0][k], viable_tubes[1][k], viable_tubes[2][k]
-        follow(arm, plane, branch, side, held, grain, tube, last, psi_t, room, path, corridor)
-        _between(part[k] * depth, tube[0], last, corridor, held.psi_bound, spins[k])
+        follow(arm, plane, branch, side, constraints, grain, tube, last, psi_t, room, path, corridor)
+        _between(part[k] * depth, tube[0], last, corridor, constraints.psi_bound, spins[k])
         if not leg_back(arm, plane, branch // 2, side, guarded, part[k] * depth, shares, room[0], spins[k]):
             return -np.inf
     overlap[0], overlap[1] = max(spins[0, 0, 0], spins[1, 0, 0]), min(spins[0, 0, 1], spins[1, 0, 1])

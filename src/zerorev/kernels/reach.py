@@ -23,7 +23,7 @@ from zerorev.kernels.tube import admissible, workspace
 
 KEPT = 8  # intervals of a set; more are hardly ever seen, and the others are then left out
 MOST_PARTS = 64  # of a step
-CLOSER = 8  # looks by which the edge of a set is located, at most
+CLOSER = 8  # samples by which the edge of a set is located, at most
 BACK = 1.0  # [rad] by which a joint may seem to have moved back, as spins at the target differ
 JUST = 0.2  # by which two slopes differ that are nearly the same, relative
 EDGE = 1e-3  # of the distance between two spins that are examined: to which it is
@@ -37,7 +37,7 @@ def workspaces():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  # type: ignore[no-untyped-def]
+def carry(arm, plane, posture, side, constraints, s, step, turn, spins, count, room):  # type: ignore[no-untyped-def]
     """Carry a set of spins along the twist plane: left ends as far down, right ends as far up as slopes admit.
 
     Args:
@@ -45,7 +45,7 @@ def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         s: where the step begins [m].
         step: how far it leads outwards; inwards, if it is below 0 [m].
         turn: by which an end moves at once, at most [rad]: steep slopes are followed in more and smaller parts.
@@ -56,7 +56,7 @@ def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  
     slopes, ends = np.zeros(2 * KEPT), np.empty(2 * KEPT)
     ends[: 2 * count] = spins.ravel()[: 2 * count]
     outwards = step > 0.0
-    _steepest(arm, plane, posture, side, held, s, outwards, ends, 2 * count, room, slopes)
+    _steepest(arm, plane, posture, side, constraints, s, outwards, ends, 2 * count, room, slopes)
     swiftest = 0.0
     for e in range(2 * count):
         swiftest = max(swiftest, abs(slopes[e]))
@@ -65,10 +65,12 @@ def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  
     middle = np.empty(2 * KEPT)
     for n in range(parts):
         if n > 0:
-            _steepest(arm, plane, posture, side, held, s + n * part, outwards, ends, 2 * count, room, slopes)
+            _steepest(arm, plane, posture, side, constraints, s + n * part, outwards, ends, 2 * count, room, slopes)
         for e in range(2 * count):
             middle[e] = ends[e] + 0.5 * part * slopes[e]
-        _steepest(arm, plane, posture, side, held, s + (n + 0.5) * part, outwards, middle, 2 * count, room, slopes)
+        _steepest(
+            arm, plane, posture, side, constraints, s + (n + 0.5) * part, outwards, middle, 2 * count, room, slopes
+        )
         for e in range(2 * count):
             ends[e] += part * slopes[e]
     for k in range(count):
@@ -79,13 +81,13 @@ def carry(arm, plane, posture, side, held, s, step, turn, spins, count, room):  
 
 
 @kernel
-def _steepest(arm, plane, posture, side, held, s, outwards, psi, count, room, slopes):  # type: ignore[no-untyped-def]
+def _steepest(arm, plane, posture, side, constraints, s, outwards, psi, count, room, slopes):  # type: ignore[no-untyped-def]
     """The slopes at which ends leave a set fastest; kept as they are where there is no pose."""
     work, lo, hi, spare = room[0]
     for e in range(count):
         work[STANDOFF * BLOCK + e], work[PSI * BLOCK + e] = s, psi[e]
     fields(arm, plane, posture, count, work)
-    admissible(work, count, side, held, lo, hi, spare)
+    admissible(work, count, side, constraints, lo, hi, spare)
     for e in range(count):
         if hi[e] > -np.inf:
             # inwards it is the steepest way that leads to the least spin
@@ -94,11 +96,11 @@ def _steepest(arm, plane, posture, side, held, s, outwards, psi, count, room, sl
                 # just beyond where slopes end: along that edge; farther out, wait for the cut
                 just = lo[e] - hi[e] < JUST * max(abs(lo[e]), abs(hi[e]))
                 slope = 0.5 * (lo[e] + hi[e]) if just else 0.0
-            slopes[e] = min(max(slope, -held.steepest), held.steepest)
+            slopes[e] = min(max(slope, -constraints.steepest), constraints.steepest)
 
 
 @kernel
-def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room):  # type: ignore[no-untyped-def]
+def cut(arm, plane, branch, side, constraints, limited, s, between, spins, count, room):  # type: ignore[no-untyped-def]
     """Cut a set to the spins with an admissible slope, and within the limits; what overlaps is joined.
 
     Args:
@@ -106,7 +108,7 @@ def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room)
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         s: stand-off [m].
         between: two spins that are examined, at most [rad].
@@ -131,16 +133,16 @@ def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room)
             for n in range(block):
                 work[STANDOFF * BLOCK + n], work[PSI * BLOCK + n] = s, left + (first + n) * apart
             fields(arm, plane, branch // 2, block, work)
-            admissible(work, block, side, held, lo, hi, spare)
+            admissible(work, block, side, constraints, lo, hi, spare)
             for n in range(block):
                 psi, after = work[PSI * BLOCK + n], spare[0, n]
                 if limited and after >= 0.0:
-                    after = min(after, limit_room(arm, plane, branch, side, s, psi, held, spot))
+                    after = min(after, limit_room(arm, plane, branch, side, s, psi, constraints, spot))
                 if first + n == 0:
                     inside, begin = after >= 0.0, psi
                 elif (after >= 0.0) != inside:
                     known = (psi, after, here, value) if after >= 0.0 else (here, value, psi, after)
-                    edge = _edge(arm, plane, branch, side, held, limited, s, known, EDGE * between, spot)
+                    edge = _edge(arm, plane, branch, side, constraints, limited, s, known, EDGE * between, spot)
                     if not inside:
                         begin = edge
                     elif found < KEPT:
@@ -156,7 +158,7 @@ def cut(arm, plane, branch, side, held, limited, s, between, spins, count, room)
 
 
 @kernel
-def _edge(arm, plane, branch, side, held, limited, s, known, close, spot):  # type: ignore[no-untyped-def]
+def _edge(arm, plane, branch, side, constraints, limited, s, known, close, spot):  # type: ignore[no-untyped-def]
     """The last living spin between a living one and a dead one, by false positions, and bisection where they fail."""
     work, lo, hi, spares = spot[0]
     alive, spare, dead, lacking = known
@@ -169,10 +171,10 @@ def _edge(arm, plane, branch, side, held, limited, s, known, close, spot):  # ty
         psi = alive + share * (dead - alive)
         work[STANDOFF * BLOCK], work[PSI * BLOCK] = s, psi
         fields(arm, plane, branch // 2, 1, work)
-        admissible(work, 1, side, held, lo, hi, spares)
+        admissible(work, 1, side, constraints, lo, hi, spares)
         there = spares[0, 0]
         if limited and there >= 0.0:
-            there = min(there, limit_room(arm, plane, branch, side, s, psi, held, spot))
+            there = min(there, limit_room(arm, plane, branch, side, s, psi, constraints, spot))
         if there >= 0.0:
             alive, spare = psi, there
         else:
@@ -181,7 +183,7 @@ def _edge(arm, plane, branch, side, held, limited, s, known, close, spot):  # ty
 
 
 @kernel
-def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no-untyped-def]
+def limit_room(arm, plane, branch, side, s, psi, constraints, spot):  # type: ignore[no-untyped-def]
     """How far a point is from the joint limits, with any turns of the joints.
 
     A joint that turns more than once round within its limits counts only where it is known how it stands at the target.
@@ -193,7 +195,7 @@ def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         s: stand-off [m].
         psi: spin [rad].
-        held: `Constraints`.
+        constraints: `Constraints`.
         spot: of what `workspaces` returns all but the first; of joints known at the target the last has the angles
             there, their turns included [rad].
 
@@ -207,8 +209,8 @@ def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no
     controller_angles(arm, cs, branch % 2 == 1, angles)
     least, full = np.inf, 2.0 * np.pi
     for i in range(6):
-        half = 0.5 * (held.upper[i] - held.lower[i])
-        away = angles[i] - 0.5 * (held.lower[i] + held.upper[i])
+        half = 0.5 * (constraints.upper[i] - constraints.lower[i])
+        away = angles[i] - 0.5 * (constraints.lower[i] + constraints.upper[i])
         if half < np.pi:
             least = min(least, half - abs(away - full * np.rint(away / full)))
         elif not np.isnan(at_target[i]):
@@ -221,7 +223,7 @@ def limit_room(arm, plane, branch, side, s, psi, held, spot):  # type: ignore[no
 
 
 @kernel
-def reachable(arm, plane, branch, side, held, limited, grain, longest, room, standoff, counts, sets, rows):  # type: ignore[no-untyped-def]
+def reachable(arm, plane, branch, side, constraints, limited, grain, longest, room, standoff, counts, sets, rows):  # type: ignore[no-untyped-def]
     """Carry a set of spins outwards until nothing is left of it.
 
     Args:
@@ -229,7 +231,7 @@ def reachable(arm, plane, branch, side, held, limited, grain, longest, room, sta
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         longest: where to stop [m].
@@ -237,7 +239,7 @@ def reachable(arm, plane, branch, side, held, limited, grain, longest, room, sta
         standoff: in and out, shape (R,): of the rows of the tube.
         counts: in and out, shape (R,).
         sets: in and out, shape (R, KEPT, 2).
-        rows: how many rows the tube has already; the last of them is where it goes on.
+        rows: how many rows the tube has already; the last of them is where it continues.
 
     Returns:
         how many rows the tube now has; the stand-off of the last of them is how far legs get. 0 where the first row
@@ -245,22 +247,24 @@ def reachable(arm, plane, branch, side, held, limited, grain, longest, room, sta
     """
     start, most = rows, standoff.shape[0]
     if rows == 1:
-        counts[0] = cut(arm, plane, branch, side, held, limited, standoff[0], grain.between, sets[0], counts[0], room)
+        counts[0] = cut(
+            arm, plane, branch, side, constraints, limited, standoff[0], grain.between, sets[0], counts[0], room
+        )
         if counts[0] == 0:
             return 0
-    low, high = sets[0, 0, 0] - held.longest, sets[0, counts[0] - 1, 1] + held.longest
-    if held.psi_bound > 0.0:
-        low, high = max(low, -held.psi_bound), min(high, held.psi_bound)
+    low, high = sets[0, 0, 0] - constraints.longest, sets[0, counts[0] - 1, 1] + constraints.longest
+    if constraints.psi_bound > 0.0:
+        low, high = max(low, -constraints.psi_bound), min(high, constraints.psi_bound)
     step = grain.step
     while rows < most and standoff[rows - 1] < longest:
         s, count = standoff[rows - 1], counts[rows - 1]
         ds = min(step, longest - s)
         here = sets[rows]
         here[:count] = sets[rows - 1, :count]
-        carry(arm, plane, branch // 2, side, held, s, ds, grain.turn, here, count, room)
+        carry(arm, plane, branch // 2, side, constraints, s, ds, grain.turn, here, count, room)
         count = within(here, joined(here, count), low, high)
         s = longest if longest - s - ds < 1e-9 else s + ds
-        count = cut(arm, plane, branch, side, held, limited, s, grain.between, here, count, room)
+        count = cut(arm, plane, branch, side, constraints, limited, s, grain.between, here, count, room)
         if count > 0:
             standoff[rows], counts[rows] = s, count
             rows += 1

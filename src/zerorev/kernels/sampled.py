@@ -44,7 +44,7 @@ def judge(arm, plane, depth, fractions, least, lower, upper, first_point, weight
         lower: least controller angles [rad], shape (6,).
         upper: greatest controller angles [rad], shape (6,).
         first_point: whether each joint has the turn in which its first angle lies within a turn from FIRST_FROM on;
-            else whatever turn fits its extents.
+            else any turn that fits its extents.
         weights: cost of one reversal, and of one radian of travel.
         spins: psi_s, psi_t and psi_e [rad], shape (M, 3).
         costs: out, shape (M, 8): eq. 4.7; 1 where a pose is out of reach.

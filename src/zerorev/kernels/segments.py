@@ -20,7 +20,7 @@ NUDGE = 1e-5  # [m], [rad] for derivatives
 
 
 @kernel
-def narrow(arm, plane, posture, side, held, tube, rows, room, viable):  # type: ignore[no-untyped-def]
+def narrow(arm, plane, posture, side, constraints, tube, rows, room, viable):  # type: ignore[no-untyped-def]
     """The spins of a tube from which a wanted end can be reached.
 
     Args:
@@ -28,7 +28,7 @@ def narrow(arm, plane, posture, side, held, tube, rows, room, viable):  # type: 
         plane: `TwistPlane`.
         posture: 0..3.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         tube: shape (MAX_ROWS, WIDTH).
         rows: how many it has.
         room: what `kernels.tube.workspace` returns.
@@ -44,10 +44,10 @@ def narrow(arm, plane, posture, side, held, tube, rows, room, viable):  # type: 
         for end in range(2):
             work[STANDOFF * BLOCK + end], work[PSI * BLOCK + end] = s, viable[n + 1, end]
         fields(arm, plane, posture, 2, work)
-        admissible(work, 2, side, held, lo, hi, spare)
+        admissible(work, 2, side, constraints, lo, hi, spare)
         for end in range(2):
             if not lo[end] <= hi[end]:  # by a hair, at the edge of where life is
-                lo[end] = hi[end] = min(max(0.5 * (lo[end] + hi[end]), -held.steepest), held.steepest)
+                lo[end] = hi[end] = min(max(0.5 * (lo[end] + hi[end]), -constraints.steepest), constraints.steepest)
         # inwards it is the steepest way that leads to the least spin
         parts[0, LEFT], parts[0, RIGHT], parts[0, LOW], parts[0, HIGH] = (
             viable[n + 1, 0],
@@ -55,7 +55,7 @@ def narrow(arm, plane, posture, side, held, tube, rows, room, viable):  # type: 
             hi[0],
             lo[1],
         )
-        drift(arm, plane, posture, s, tube[n, 0] - s, parts, 1, side, held, room, spins)
+        drift(arm, plane, posture, s, tube[n, 0] - s, parts, 1, side, constraints, room, spins)
         widest = -1.0
         for k in range(int(tube[n, 1])):
             a = max(spins[0, 0] - ROUNDING, tube[n, 2 + 2 * k])
@@ -101,7 +101,7 @@ def place_knots(tube, rows, viable, knots):  # type: ignore[no-untyped-def]
 
 @kernel
 def linearise(arm, plane, posture, side, standoff, psi, shares, min_rate, unit, out):  # type: ignore[no-untyped-def]
-    """What the joints' rates on a leg of straight segments have to spare, and how it changes with the breakpoints.
+    """The slack of the joints' rates on a leg of straight segments, and how it changes with the breakpoints.
 
     Next to a singularity rates change without bound and over no distance at all. Where only their signs matter much,
     they are better weighed by one over 1 + the square of all fields, which leaves smooth functions there.
@@ -113,19 +113,19 @@ def linearise(arm, plane, posture, side, standoff, psi, shares, min_rate, unit, 
         side: signs of the outward rates on the unflipped wrist, shape (6,).
         standoff: of the breakpoints [m], shape (K + 1,).
         psi: spins there [rad], shape (K + 1,).
-        shares: where on each segment it is looked at, 0 to 1, shape (Q,).
+        shares: where on each segment it is examined, 0 to 1, shape (Q,).
         min_rate: what every joint has to keep [rad/m].
         unit: length by which stand-offs are set against spins [m/rad] where rates are weighed; 0: they are not.
-        out: out, shape (K, Q, 6, 5): what the rate in the wanted direction has to spare [rad/m]; its derivatives by the
+        out: out, shape (K, Q, 6, 5): the slack of the rate in the wanted direction [rad/m]; its derivatives by the
             stand-off and by the spin of the inner breakpoint, then of the outer one.
     """
-    segments, looks = standoff.shape[0] - 1, shares.shape[0]
-    where, turned, spare = np.empty(5 * looks), np.empty(5 * looks), np.empty(5)
-    theta_s, theta_psi, weight = np.empty((6, 5 * looks)), np.empty((6, 5 * looks)), np.ones(5 * looks)
+    segments, samples = standoff.shape[0] - 1, shares.shape[0]
+    where, turned, spare = np.empty(5 * samples), np.empty(5 * samples), np.empty(5)
+    theta_s, theta_psi, weight = np.empty((6, 5 * samples)), np.empty((6, 5 * samples)), np.ones(5 * samples)
     for k in range(segments):
         length = standoff[k + 1] - standoff[k]
         slope = (psi[k + 1] - psi[k]) / length
-        for q in range(looks):
+        for q in range(samples):
             s, p = standoff[k] + shares[q] * length, psi[k] + shares[q] * (psi[k + 1] - psi[k])
             for n in range(5):
                 where[5 * q + n], turned[5 * q + n] = s, p
@@ -135,12 +135,12 @@ def linearise(arm, plane, posture, side, standoff, psi, shares, min_rate, unit, 
             turned[5 * q + 4] -= NUDGE
         rates(arm, plane, posture, where, turned, theta_s, theta_psi)
         if unit > 0.0:
-            for n in range(5 * looks):
+            for n in range(5 * samples):
                 square = 1.0
                 for i in range(6):
                     square += theta_psi[i, n] ** 2 + (unit * theta_s[i, n]) ** 2
                 weight[n] = 1.0 / square
-        for q in range(looks):
+        for q in range(samples):
             for i in range(6):
                 for n in range(5):
                     at = 5 * q + n

@@ -1,9 +1,9 @@
 """Small linear programmes with bounds, by the dual simplex method.
 
-    least cost . x   subject to   spare + by . x >= 0 in every row   and   low <= x <= high
+    least cost . x   such that   spare + by . x >= 0 in every row   and   low <= x <= high
 
 Every row knows but a few of the unknowns. The method begins at the corner of the box that is cheapest and takes in, one
-after the other, the row that is most violated, so that rows which never matter cost no more than a look.
+after the other, the row that is most violated, so that rows which never matter cost no more than a check.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from zerorev.kernels._jit import kernel
 
 WIDTH = 5  # unknowns in a row
 VIOLATED = 1e-9  # of rows whose greatest coefficient is about 1
-SLACK_RATIO = 1e-9  # by which a multiplier may go below nil, so that a larger pivot can be had
+SLACK_RATIO = 1e-9  # by which a multiplier may go below nil, so that a larger pivot is available
 LEAST_PIVOT = 1e-9
 
 FOUND, CONTRADICTED, GIVEN_UP = range(3)

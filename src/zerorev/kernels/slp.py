@@ -1,10 +1,10 @@
-"""Two legs of straight segments, bettered together by sequential linear programming (theory §4).
+"""Two legs of straight segments, improved together by sequential linear programming (theory §4).
 
 The unknowns are the depth and the spins at all breakpoints of both legs, the target among them; the stand-offs of the
 breakpoints change in proportion to the depth. The rates of the joints at points along the segments are very nearly
 linear functions of the unknowns within a small region, and so are the joints at the outer ends; a linear programme goes
-as far as it can within that region. A step counts only if it betters the goal, with what the rates lack added at a
-price; the region grows and shrinks by how well the step was foretold.
+as far as it can within that region. A step counts only if it improves the goal, with what the rates lack added at a
+price; the region grows and shrinks by how well the step was predicted.
 
 Where every joint keeps its direction each comes nearest to its limits at the two outer ends, so those alone are held.
 
@@ -20,7 +20,7 @@ from zerorev.kernels.arm import controller_angles, flip_sign, solve_at, twist_fi
 from zerorev.kernels.segments import elbow, linearise
 from zerorev.kernels.simplex import WIDTH, solve
 
-# what is bettered; all but the first keep the depth
+# what is improved; all but the first keep the depth
 DEPTH, TRAVEL, MARGIN, PLUNGE_ROTATION = range(4)
 
 TRUSTED_TURN = 0.2  # [rad] by which a spin moves in one step, at most
@@ -29,7 +29,7 @@ FIRST_TRUST, LEAST_TRUST = 0.5, 1e-4  # shares of the two
 LEAST_BEND = 1e-4  # of the elbow, as `elbow` measures it: about 0.01 mm from the end of the reach
 CLEAN = 1e-8  # [rad/m] that may lack at the end; else the price of it is raised
 RAISE, RAISES = 30.0, 2
-ROOMY = 1e-6  # what a rate to spare is worth, against one that lacks: what does not matter else is laid in the middle
+ROOMY = 1e-6  # what a slack of a rate is worth, against a shortfall: what does not matter else is laid in the middle
 HALVINGS = 6  # of a step that cannot be run
 FOLLOWED = 8  # steps of a leg, at least, in which joints are followed to its end
 WRONG_WAY = 0.5 * np.pi  # [rad] by which a joint that should go the other way goes in one of them, at most
@@ -49,7 +49,7 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
             has the opposite ones.
         rules: `Constraints`.
         goal: DEPTH, as deep as can be; TRAVEL, the least; MARGIN, the greatest; PLUNGE_ROTATION, the least of the two.
-        shares: where on each segment the joints are looked at, 0 to 1, shape (Q,).
+        shares: where on each segment the joints are examined, 0 to 1, shape (Q,).
         steps: at most.
         enough: less gain than this, relative, is none.
         weighed: whether rates are weighed as in `linearise`, not for MARGIN: the way past a singularity is then open,
@@ -61,10 +61,10 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
         by how much a rate, weighed or not, or the room to a limit over the depth, lacks what is
         asked, at most [rad/m]; below 0 where nothing lacks; inf where the legs to begin with cannot be run.
     """
-    segments, looks = standoff.shape[1] - 1, shares.shape[0]
+    segments, samples = standoff.shape[1] - 1, shares.shape[0]
     size = 4 + 2 * segments
-    rows = 14 * segments * looks + 12 + 4 * segments
-    rates = np.empty((2, segments, looks, 6, 5))
+    rows = 14 * segments * samples + 12 + 4 * segments
+    rates = np.empty((2, segments, samples, 6, 5))
     at, by, spare = np.empty((2, rows, WIDTH), dtype=np.int64), np.empty((2, rows, WIDTH)), np.empty((2, rows))
     cost, step = np.zeros((2, size)), np.empty(size)
     bent = np.empty(rows)
@@ -72,7 +72,7 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
     unit = standoff[0, segments]  # over which room to a limit is spread, so that it can be set against rates
     share = standoff / unit
     there = standoff.copy(), psi.copy()
-    asked = rules, goal, shares, share, unit, weighed
+    task = rules, goal, shares, share, unit, weighed
 
     scale, price = 1.0, 30.0
     if goal == DEPTH:
@@ -80,15 +80,15 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
     elif goal == MARGIN:
         scale, price = rules.min_rate, 1.0
     here, trust, raised = 0, FIRST_TRUST, 0
-    lack = _look(arm, plane, branch, sense, asked, standoff, psi, rates, at[0], by[0], spare[0], cost[0])
+    lack = _look(arm, plane, branch, sense, task, standoff, psi, rates, at[0], by[0], spare[0], cost[0])
     if lack == np.inf:
         return lack
     for _ in range(steps):
-        foretold = _step(
+        predicted = _step(
             rules, goal, trust, lack, price, standoff[0, segments], psi, at[here], by[here], spare[here], cost[here],
             near, step,
         )  # fmt: skip
-        if not foretold >= enough * scale or trust < LEAST_TRUST:
+        if not predicted >= enough * scale or trust < LEAST_TRUST:
             if goal == MARGIN or lack <= CLEAN or raised == RAISES:
                 break
             # to lack something has paid so far
@@ -98,18 +98,18 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
             for _ in range(HALVINGS):
                 _move(share, standoff, psi, step, there)
                 lack_there = _look(
-                    arm, plane, branch, sense, asked, there[0], there[1], rates,
+                    arm, plane, branch, sense, task, there[0], there[1], rates,
                     at[1 - here], by[1 - here], spare[1 - here], cost[1 - here],
                 )  # fmt: skip
                 if lack_there < np.inf:
                     break
                 # over the end of the reach, which is curved
                 step *= 0.5
-                foretold *= 0.5
+                predicted *= 0.5
             gain = _worth(goal, price, lack) - _worth(goal, price, lack_there)
             for i in range(size - 2):
                 gain -= cost[here, i] * step[i]
-            if corrected == 1 or gain > 0.6 * foretold or lack_there == np.inf:
+            if corrected == 1 or gain > 0.6 * predicted or lack_there == np.inf:
                 break
             # the rows are curved: once more, with what they really have at the end of the step
             for r in range(rows):
@@ -122,11 +122,11 @@ def better(arm, plane, branch, sense, rules, goal, shares, steps, enough, weighe
             )  # fmt: skip
             if not again > 0.0:
                 break
-        if gain > 0.6 * foretold:
+        if gain > 0.6 * predicted:
             trust = min(1.0, 2.0 * trust)
-        elif not gain > 0.1 * foretold:
+        elif not gain > 0.1 * predicted:
             trust *= 0.4
-        if gain > 0.1 * foretold:
+        if gain > 0.1 * predicted:
             here, lack = 1 - here, lack_there
             standoff[:], psi[:] = there[0], there[1]
     return lack
@@ -156,7 +156,7 @@ def _spin(k, n, segments):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _look(arm, plane, branch, sense, asked, standoff, psi, rates, at, by, spare, cost):  # type: ignore[no-untyped-def]
+def _look(arm, plane, branch, sense, task, standoff, psi, rates, at, by, spare, cost):  # type: ignore[no-untyped-def]
     """All that a linear programme needs to know of legs: its rows and costs.
 
     First come rates and elbow at all points, then the room of the joints at the outer ends, then the twist rates.
@@ -164,8 +164,8 @@ def _look(arm, plane, branch, sense, asked, standoff, psi, rates, at, by, spare,
     Returns:
         see `better`.
     """
-    rules, goal, shares, share, unit, weighed = asked
-    segments, looks = standoff.shape[1] - 1, shares.shape[0]
+    rules, goal, shares, share, unit, weighed = task
+    segments, samples = standoff.shape[1] - 1, shares.shape[0]
     size = 4 + 2 * segments
     cs, theta_s, theta_psi, side = np.empty((6, 2)), np.empty(6), np.empty(6), np.empty(6)
     at[:], by[:], cost[:] = 0, 0.0, 0.0
@@ -176,7 +176,7 @@ def _look(arm, plane, branch, sense, asked, standoff, psi, rates, at, by, spare,
         linearise(arm, plane, branch // 2, side, standoff[k], psi[k], shares, rules.min_rate, per, rates[k])
         for n in range(segments):
             length = standoff[k, n + 1] - standoff[k, n]
-            for q in range(looks):
+            for q in range(samples):
                 for i in range(6):
                     found = rates[k, n, q, i]
                     if np.isnan(found[0]):
@@ -192,7 +192,7 @@ def _look(arm, plane, branch, sense, asked, standoff, psi, rates, at, by, spare,
                 s, turned = standoff[k, n] + part * length, psi[k, n] + part * (psi[k, n + 1] - psi[k, n])
                 bend, by_s, by_psi = elbow(arm, plane, branch // 2, s, turned)
                 spare[r] = bend - LEAST_BEND
-                if goal == MARGIN:  # which the elbow is no part of
+                if goal == MARGIN:  # which does not contain the elbow
                     spare[r] = max(spare[r], 0.0)
                 else:
                     lack = max(lack, -spare[r])
@@ -329,10 +329,10 @@ def _step(rules, goal, trust, lack, price, depth, psi, at, by, spare, cost, near
         spare: see `simplex.solve`.
         cost: see `simplex.solve`.
         near: room for the rows that may matter.
-        step: out, shape (N,): the last two are what the rates lack afterwards, and what they have to spare.
+        step: out, shape (N,): the last two are the shortfall of the rates afterwards, and their slack.
 
     Returns:
-        what it is foretold to gain; 0 where there is no step.
+        the predicted gain; 0 where there is no step.
     """
     size, rows, segments = cost.shape[0], spare.shape[0], psi.shape[1] - 1
     reach = np.full(size, trust * TRUSTED_TURN)

@@ -23,7 +23,7 @@ from zerorev.kernels.legs import NIL
 KEPT = 4  # intervals of a set; more are hardly ever seen, and the others are then left out
 WIDTH = 2 + 2 * KEPT
 MAX_ROWS = 4096  # of a tube
-LEAST_NODES = 5  # points looked at on an interval, at least
+LEAST_NODES = 5  # points examined on an interval, at least
 # columns of what is left of a set after the dead spins are cut away: its ends, and the slopes at which these move
 LEFT, RIGHT, LOW, HIGH = range(4)
 
@@ -35,14 +35,14 @@ def workspace():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def admissible(work, count, side, held, lo, hi, spare):  # type: ignore[no-untyped-def]
+def admissible(work, count, side, constraints, lo, hi, spare):  # type: ignore[no-untyped-def]
     """The interval of admissible slopes at each of a few points; empty (lo > hi) where there is none.
 
     Args:
         work: as left by `kernels.field.fields`.
         count: how many points.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         lo: out, shape (BLOCK,) [rad/m].
         hi: out, shape (BLOCK,) [rad/m].
         spare: out, shape (2, BLOCK): by how much the joints that bound the interval outrun the threshold where their
@@ -50,15 +50,15 @@ def admissible(work, count, side, held, lo, hi, spare):  # type: ignore[no-untyp
     """
     spare, per_lo, per_hi = spare[0], spare[0], spare[1]
     for n in range(count):
-        lo[n], hi[n], per_lo[n], per_hi[n] = -held.steepest, held.steepest, 0.0, 0.0
+        lo[n], hi[n], per_lo[n], per_hi[n] = -constraints.steepest, constraints.steepest, 0.0, 0.0
     for i in range(6):
         for n in range(count):
             still = side[i] * work[(THETA_S + i) * BLOCK + n]
             turning = side[i] * work[(THETA_PSI + i) * BLOCK + n] + 0.0  # no -0, so that its critical rate has a sign
             per_turning = 1.0 / turning
-            critical = (held.min_rate - still) * per_turning
+            critical = (constraints.min_rate - still) * per_turning
             # a joint that does not move at all does not reverse either
-            moves = abs(still) + abs(turning) * held.steepest > NIL
+            moves = abs(still) + abs(turning) * constraints.steepest > NIL
             low = critical if (turning >= 0.0) & moves else -np.inf
             high = critical if (turning < 0.0) & moves else np.inf
             per_lo[n] = per_turning if low > lo[n] else per_lo[n]
@@ -72,7 +72,7 @@ def admissible(work, count, side, held, lo, hi, spare):  # type: ignore[no-untyp
 
 
 @kernel
-def living(arm, plane, posture, s, spins, count, side, held, grain, room, parts):  # type: ignore[no-untyped-def]
+def living(arm, plane, posture, s, spins, count, side, constraints, grain, room, parts):  # type: ignore[no-untyped-def]
     """What is left of a set of spins where those without an admissible slope are cut away.
 
     Args:
@@ -83,7 +83,7 @@ def living(arm, plane, posture, s, spins, count, side, held, grain, room, parts)
         spins: set of spins, shape (KEPT, 2); intervals that overlap are joined.
         count: how many intervals it has.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         grain: `Grain`.
         room: what `workspace` returns.
         parts: out, shape (KEPT, 4): LEFT, RIGHT, LOW and HIGH of each interval.
@@ -106,7 +106,7 @@ def living(arm, plane, posture, s, spins, count, side, held, grain, room, parts)
             work[STANDOFF * BLOCK + n] = s
             work[PSI * BLOCK + n] = left + (right - left) * n / max(1, nodes - 1)
         fields(arm, plane, posture, nodes, work)
-        admissible(work, nodes, side, held, lo, hi, spare)
+        admissible(work, nodes, side, constraints, lo, hi, spare)
         alive = False
         for n in range(nodes):
             if not alive and spare[0, n] >= 0.0:
@@ -144,7 +144,7 @@ def _edge(work, lo, hi, spare, n, dead):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def drift(arm, plane, posture, s, step, parts, count, side, held, room, spins):  # type: ignore[no-untyped-def]
+def drift(arm, plane, posture, s, step, parts, count, side, constraints, room, spins):  # type: ignore[no-untyped-def]
     """Where the ends of a set's intervals are a step outwards (inwards, if it is below 0), by the midpoint rule."""
     work, lo, hi, spare = room
     for k in range(count):
@@ -153,7 +153,7 @@ def drift(arm, plane, posture, s, step, parts, count, side, held, room, spins): 
             work[STANDOFF * BLOCK + 2 * k + end] = s + 0.5 * step
             work[PSI * BLOCK + 2 * k + end] = parts[k, end] + 0.5 * step * slope
     fields(arm, plane, posture, 2 * count, work)
-    admissible(work, 2 * count, side, held, lo, hi, spare)
+    admissible(work, 2 * count, side, constraints, lo, hi, spare)
     for k in range(count):
         # inwards it is the steepest way that leads to the least spin
         low, high = (lo, hi) if step > 0.0 else (hi, lo)
@@ -164,7 +164,7 @@ def drift(arm, plane, posture, s, step, parts, count, side, held, room, spins): 
 
 
 @kernel
-def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  # type: ignore[no-untyped-def]
+def march(arm, plane, posture, side, constraints, grain, longest, room, tube, rows):  # type: ignore[no-untyped-def]
     """Carry a set of spins outwards until nothing is left of it.
 
     Args:
@@ -172,12 +172,12 @@ def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  #
         plane: `TwistPlane`.
         posture: 0..3.
         side: wanted sign of each joint's outward rate, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         grain: `Grain`.
         longest: where to stop [m].
         room: as `living` takes it.
         tube: in and out, shape (MAX_ROWS, WIDTH).
-        rows: how many rows the tube has already; the last of them is where it goes on.
+        rows: how many rows the tube has already; the last of them is where it continues.
 
     Returns:
         how many rows the tube now has; the stand-off of the last of them is how far legs get. 0 where the first row
@@ -189,11 +189,11 @@ def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  #
     for k in range(count):
         spins[k, 0], spins[k, 1] = tube[rows, 2 + 2 * k], tube[rows, 3 + 2 * k]
     middle = 0.5 * (tube[0, 2] + tube[0, 3])
-    low, high = middle - held.longest, middle + held.longest
-    if held.psi_bound > 0.0:
-        low, high = max(low, -held.psi_bound), min(high, held.psi_bound)
+    low, high = middle - constraints.longest, middle + constraints.longest
+    if constraints.psi_bound > 0.0:
+        low, high = max(low, -constraints.psi_bound), min(high, constraints.psi_bound)
     while rows < MAX_ROWS:
-        left = living(arm, plane, posture, s, spins, count, side, held, grain, room, parts)
+        left = living(arm, plane, posture, s, spins, count, side, constraints, grain, room, parts)
         if left > 0:
             tube[rows, 0], tube[rows, 1] = s, left
             for k in range(left):
@@ -211,7 +211,7 @@ def march(arm, plane, posture, side, held, grain, longest, room, tube, rows):  #
         ds = min(step, longest - s)
         if ds * swiftest > grain.turn:
             ds = grain.turn / swiftest
-        drift(arm, plane, posture, s, ds, last, count, side, held, room, spins)
+        drift(arm, plane, posture, s, ds, last, count, side, constraints, room, spins)
         count = _within(spins, count, low, high)
         s = longest if longest - s - ds < 1e-9 else s + ds
     return rows

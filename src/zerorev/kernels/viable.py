@@ -1,4 +1,4 @@
-"""Viable sets: how deep free legs get, from whatever spin at the target (theory §4).
+"""Viable sets: how deep free legs get, from any spin at the target (theory §4).
 
 Carried back inwards from a depth, within the reachable sets (`kernels.reach`), sets of spins become *viable*: from
 their spins, and from no others, a leg gets to that depth. So two legs of a depth, one for the signs sigma and one for
@@ -15,7 +15,7 @@ import numpy as np
 from zerorev.kernels._jit import kernel
 from zerorev.kernels.reach import KEPT, carry, cut, joined, reachable, within
 
-MISSED = 0.5  # of the distance between two spins that are looked at: by which the way in may miss the way out
+MISSED = 0.5  # of the distance between two spins that are examined: by which the way in may miss the way out
 
 
 @kernel
@@ -39,7 +39,7 @@ def common(one, count, other, other_count, missed, out):  # type: ignore[no-unty
 
 
 @kernel
-def viable(arm, plane, branch, side, held, limited, grain, depth, room, tube, rows, out):  # type: ignore[no-untyped-def]
+def viable(arm, plane, branch, side, constraints, limited, grain, depth, room, tube, rows, out):  # type: ignore[no-untyped-def]
     """The viable sets of a depth, within a reachable tube.
 
     Args:
@@ -47,7 +47,7 @@ def viable(arm, plane, branch, side, held, limited, grain, depth, room, tube, ro
         plane: `TwistPlane`.
         branch: 0..7.
         side: signs of the outward rates on the unflipped wrist, shape (6,).
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         depth: [m], no more than the tube gets to.
@@ -67,17 +67,17 @@ def viable(arm, plane, branch, side, held, limited, grain, depth, room, tube, ro
     # out to the depth itself
     s, count = standoff[last - 1], counts[last - 1]
     spins[:count] = sets[last - 1, :count]
-    carry(arm, plane, branch // 2, side, held, s, depth - s, grain.turn, spins, count, room)
-    if held.psi_bound > 0.0:
-        count = within(spins, count, -held.psi_bound, held.psi_bound)
-    count = cut(arm, plane, branch, side, held, limited, depth, grain.between, spins, count, room)
+    carry(arm, plane, branch // 2, side, constraints, s, depth - s, grain.turn, spins, count, room)
+    if constraints.psi_bound > 0.0:
+        count = within(spins, count, -constraints.psi_bound, constraints.psi_bound)
+    count = cut(arm, plane, branch, side, constraints, limited, depth, grain.between, spins, count, room)
     s = depth
     out[0][last], out[1][last] = depth, count
     out[2][last, :count] = spins[:count]
     for r in range(last - 1, -1, -1):
         if count == 0:
             return 0
-        carry(arm, plane, branch // 2, side, held, s, standoff[r] - s, grain.turn, spins, count, room)
+        carry(arm, plane, branch // 2, side, constraints, s, standoff[r] - s, grain.turn, spins, count, room)
         s = standoff[r]
         count = common(spins, joined(spins, count), sets[r], counts[r], MISSED * grain.between, out[2][r])
         out[0][r], out[1][r] = s, count
@@ -86,7 +86,7 @@ def viable(arm, plane, branch, side, held, limited, grain, depth, room, tube, ro
 
 
 @kernel
-def pair_bound(arm, plane, branch, sense, held, limited, grain, low, high, enough, longest, room, tubes, rows):  # type: ignore[no-untyped-def]
+def pair_bound(arm, plane, branch, sense, constraints, limited, grain, low, high, enough, longest, room, tubes, rows):  # type: ignore[no-untyped-def]
     """How deep any two legs out of an interval of spins at the target get, at most: where the first tube ends.
 
     Args:
@@ -95,7 +95,7 @@ def pair_bound(arm, plane, branch, sense, held, limited, grain, low, high, enoug
         branch: 0..7.
         sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,); the second leg has the
             opposite ones.
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         low: least spin at the target [rad].
@@ -119,8 +119,8 @@ def pair_bound(arm, plane, branch, sense, held, limited, grain, low, high, enoug
         depth = stretch
         for k in range(2):
             rows[k] = reachable(
-                arm, plane, branch, (1.0 - 2.0 * k) * sense, held, limited, grain, depth, room, standoff[k], counts[k],
-                sets[k], rows[k],
+                arm, plane, branch, (1.0 - 2.0 * k) * sense, constraints, limited, grain, depth, room, standoff[k],
+                counts[k], sets[k], rows[k],
             )  # fmt: skip
             if rows[k] == 0:
                 return 0.0
@@ -133,7 +133,9 @@ def pair_bound(arm, plane, branch, sense, held, limited, grain, low, high, enoug
 
 
 @kernel
-def pair_meets(arm, plane, branch, sense, held, limited, grain, depth, room, tubes, rows, out, out_rows, overlap):  # type: ignore[no-untyped-def]
+def pair_meets(  # type: ignore[no-untyped-def]
+    arm, plane, branch, sense, constraints, limited, grain, depth, room, tubes, rows, out, out_rows, overlap
+):
     """Where two legs of a depth set out at the target.
 
     Args:
@@ -141,7 +143,7 @@ def pair_meets(arm, plane, branch, sense, held, limited, grain, depth, room, tub
         plane: `TwistPlane`.
         branch: 0..7.
         sense: see `pair_bound`.
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         depth: [m], no more than `pair_bound` has found.
@@ -158,7 +160,7 @@ def pair_meets(arm, plane, branch, sense, held, limited, grain, depth, room, tub
     standoff, counts, sets = tubes
     for k in range(2):
         out_rows[k] = viable(
-            arm, plane, branch, (1.0 - 2.0 * k) * sense, held, limited, grain, depth, room,
+            arm, plane, branch, (1.0 - 2.0 * k) * sense, constraints, limited, grain, depth, room,
             (standoff[k], counts[k], sets[k]), rows[k], (out[0][k], out[1][k], out[2][k]),
         )  # fmt: skip
         if out_rows[k] == 0:
@@ -175,7 +177,22 @@ def pair_meets(arm, plane, branch, sense, held, limited, grain, depth, room, tub
 
 @kernel
 def pair_depth(  # type: ignore[no-untyped-def]
-    arm, plane, branch, sense, held, limited, grain, least, most, close, room, tubes, rows, out, out_rows, overlap
+    arm,
+    plane,
+    branch,
+    sense,
+    constraints,
+    limited,
+    grain,
+    least,
+    most,
+    close,
+    room,
+    tubes,
+    rows,
+    out,
+    out_rows,
+    overlap,
 ):
     """How deep two legs get, by bisection with `pair_meets`.
 
@@ -184,7 +201,7 @@ def pair_depth(  # type: ignore[no-untyped-def]
         plane: `TwistPlane`.
         branch: 0..7.
         sense: see `pair_bound`.
-        held: `Constraints`.
+        constraints: `Constraints`.
         limited: whether joint limits are heeded.
         grain: `Grain`.
         least: a depth below which nothing is asked for [m].
@@ -203,7 +220,7 @@ def pair_depth(  # type: ignore[no-untyped-def]
     low, high, trial = 0.0, most, least
     while True:
         if pair_meets(
-            arm, plane, branch, sense, held, limited, grain, trial, room, tubes, rows, out, out_rows, overlap
+            arm, plane, branch, sense, constraints, limited, grain, trial, room, tubes, rows, out, out_rows, overlap
         ):
             low = trial
         else:
@@ -212,5 +229,7 @@ def pair_depth(  # type: ignore[no-untyped-def]
             break
         trial = most if trial == least else 0.5 * (low + high)
     if 0.0 < low < trial:
-        pair_meets(arm, plane, branch, sense, held, limited, grain, low, room, tubes, rows, out, out_rows, overlap)
+        pair_meets(
+            arm, plane, branch, sense, constraints, limited, grain, low, room, tubes, rows, out, out_rows, overlap
+        )
     return low

@@ -1,10 +1,10 @@
-"""What a leg costs and how much margin it has, from as few points of the rate fields as will do.
+"""What a leg costs and how much margin it has, from as few points of the rate fields as suffice.
 
 `kernels.legs` follows a leg joint by joint; here the joints are not kept apart, only the worst of them and the sum of
 their motion: that is all that tells one slope from another while nothing turns round inside the leg.
 
 Lengths in m, angles in rad, rates outwards in rad/m. No kernel raises.
-`asked` is a `layout.Constraints` throughout.
+`constraints` is a `layout.Constraints` throughout.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from zerorev.kernels.field import BLOCK, MOTION, PSI, SIGNS, SLOPE, STANDOFF, TH
 from zerorev.kernels.legs import NIL, place
 
 THETA_PSI_ON = (THETA_PSI - THETA_S) * BLOCK  # from a joint's theta_s to its theta_psi
-SIEVE = 4  # points on a leg that is first looked at
-SIEVE_ERROR = 0.02  # of the travel told from those
+SIEVE = 4  # points on a leg that is examined first
+SIEVE_ERROR = 0.02  # of the travel estimated from those
 
 
 @lean
-def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):  # type: ignore[no-untyped-def]
+def lay_leg(arm, plane, branch, psi_t, slope, length, demands, constraints, nodes, work):  # type: ignore[no-untyped-def]
     """The rates of a leg in the workspace: each joint's, and at each node the worst of all and the motion of all.
 
     Args:
@@ -32,12 +32,12 @@ def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):
         psi_t: spin at the target [rad].
         slope: twist rate [rad/m].
         length: of the leg [m].
-        held: (sense, keep, at_target), see `judge_leg`.
-        asked: `Constraints`.
+        demands: (sense, keep, at_target), see `judge_leg`.
+        constraints: `Constraints`.
         nodes: points on the leg, at most BLOCK.
         work: room for `fields`; NaN in the row MOTION where a node is out of reach.
     """
-    sense, keep, _ = held
+    sense, keep, _ = demands
     place(psi_t, slope, length / (nodes - 1), 0, nodes, work)
     fields(arm, plane, branch // 2, nodes, work)
     for n in range(nodes):
@@ -46,15 +46,15 @@ def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):
         work[MOTION * BLOCK + n] = 0.0
     five = flip_sign(arm, branch)
     for i in range(6):
-        sign, spare = sense[i], asked.min_rate if asked.mean_rule else 0.0
+        sign, spare = sense[i], constraints.min_rate if constraints.mean_rule else 0.0
         if i == 4:
             sign *= five
         at, last = (THETA_S + i) * BLOCK, nodes - 1
         outset = work[at] + slope * work[at + THETA_PSI_ON]
         if not keep[i]:
-            # it may turn at the target, so it goes whichever way it sets out
+            # it may turn at the target, so it goes the way in which it begins
             sign = 1.0 if outset > 0.0 else -1.0
-            spare = np.inf if asked.turn_inside else asked.min_rate
+            spare = np.inf if constraints.turn_inside else constraints.min_rate
         middle = work[at + last // 2] + slope * work[at + last // 2 + THETA_PSI_ON]
         end = work[at + last] + slope * work[at + last + THETA_PSI_ON]
         if max(abs(outset), abs(middle), abs(end)) <= NIL:
@@ -64,7 +64,7 @@ def lay_leg(arm, plane, branch, psi_t, slope, length, held, asked, nodes, work):
 
 
 @lean
-def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # type: ignore[no-untyped-def]
+def weigh_leg(arm, plane, branch, psi_t, slope, demands, constraints, nodes, work):  # type: ignore[no-untyped-def]
     """Margin, slack and travel of a leg: what `judge_leg` says of `trace_leg`, at a tenth of the cost.
 
     The slack is that of the outer end, where a leg whose joints all keep their directions comes nearest to a limit.
@@ -75,8 +75,8 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
         branch: 0..7.
         psi_t: spin at the target [rad].
         slope: twist rate [rad/m].
-        held: (sense, keep, at_target), see `judge_leg`.
-        asked: `Constraints`; limits that are infinite are not looked at.
+        demands: (sense, keep, at_target), see `judge_leg`.
+        constraints: `Constraints`; limits that are infinite are not examined.
         nodes: points on the leg, at most BLOCK.
         work: room for `fields`.
 
@@ -85,9 +85,9 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
         slack: least distance to a limit [rad].
         travel: sum of the joints' angles moved [rad].
     """
-    keep, at_target = held[1], held[2]
-    step = asked.depth / (nodes - 1)
-    lay_leg(arm, plane, branch, psi_t, slope, asked.depth, held, asked, nodes, work)
+    keep, at_target = demands[1], demands[2]
+    step = constraints.depth / (nodes - 1)
+    lay_leg(arm, plane, branch, psi_t, slope, constraints.depth, demands, constraints, nodes, work)
     five = flip_sign(arm, branch)
     worst, motion = np.inf, 0.0
     for n in range(nodes):
@@ -102,15 +102,15 @@ def weigh_leg(arm, plane, branch, psi_t, slope, held, asked, nodes, work):  # ty
         if dips or n == 1 or n == nodes - 2:
             worst = min(worst, between_nodes(work, n))
     slack = np.inf
-    if asked.mean_rule or asked.lower[0] > -np.inf:
+    if constraints.mean_rule or constraints.lower[0] > -np.inf:
         for i in range(6):
             moved = _sum_ends(work, THETA_S + i, nodes)
             for n in range(nodes):
                 moved += work[(THETA_S + i) * BLOCK + n]
-            if asked.mean_rule and keep[i] and work[SIGNS * BLOCK + 6 + i] < np.inf:
+            if constraints.mean_rule and keep[i] and work[SIGNS * BLOCK + 6 + i] < np.inf:
                 worst = min(worst, work[SIGNS * BLOCK + i] * moved / (nodes - 1))
             end = at_target[i] + step * moved * (five if i == 4 else 1.0)
-            slack = min(slack, end - asked.lower[i], asked.upper[i] - end)
+            slack = min(slack, end - constraints.lower[i], constraints.upper[i] - end)
     return worst, slack, step * (motion + _sum_ends(work, MOTION, nodes))
 
 
@@ -148,7 +148,7 @@ def _sum_ends(work, row, nodes):  # type: ignore[no-untyped-def]
 
 
 @lean
-def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, ceiling, travel, ends):  # type: ignore[no-untyped-def]
+def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, constraints, work, ceiling, travel, ends):  # type: ignore[no-untyped-def]
     """What the margin of each of many legs is at most, and about its travel, from a few points of each.
 
     Args:
@@ -160,14 +160,14 @@ def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, cei
         count: how many slopes.
         sense: see `judge_leg`.
         keep: see `judge_leg`.
-        asked: `Constraints`.
+        constraints: `Constraints`.
         work: room for `fields`.
         ceiling: out: [rad/m], -inf where a leg cannot be run.
         travel: out: [rad], inf where a leg cannot be run.
         ends: out, shape (count, 6): about the angles at the outer end, relative to the target [rad].
     """
     at_once = BLOCK // SIEVE
-    step, five = asked.depth / (SIEVE - 1), flip_sign(arm, branch)
+    step, five = constraints.depth / (SIEVE - 1), flip_sign(arm, branch)
     for first in range(0, count, at_once):
         legs = min(at_once, count - first)
         # node by node, all legs in each; the target, where all of them set out, last and only once
@@ -190,7 +190,7 @@ def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, cei
             work[WORST * BLOCK + n] = np.inf
             work[MOTION * BLOCK + n] = 0.0
         for i in range(6):
-            spare = asked.min_rate if asked.mean_rule else 0.0
+            spare = constraints.min_rate if constraints.mean_rule else 0.0
             # what moves so little may be a joint that does not move, which does not reverse: a ceiling is a ceiling
             _fold(work, i, sense[i] * (five if i == 4 else 1.0), spare if keep[i] else np.inf, NIL, SIEVE * legs)
         for j in range(legs):
@@ -202,9 +202,9 @@ def sift(arm, plane, branch, psi_t, slopes, count, sense, keep, asked, work, cei
                 ceiling[first + j] = min(
                     min(work[worst + outset], work[worst]), min(work[worst + legs], work[worst + 2 * legs])
                 )
-                travel[first + j] = asked.depth * moved
+                travel[first + j] = constraints.depth * moved
             for i in range(6):
-                end = asked.depth * _mean_of_four(work, (THETA_S + i) * BLOCK + j, legs)
+                end = constraints.depth * _mean_of_four(work, (THETA_S + i) * BLOCK + j, legs)
                 ends[first + j, i] = end * five if i == 4 else end
 
 

@@ -1,6 +1,6 @@
 """What a workspace map says, cell by cell: its best cells, its mirror in Y, and how far it is from another map.
 
-A map on a grid and one at given points are read into the same form, a row a target and a column a direction.
+A map on a grid and one at given points are read into the same form, a row per target and a column per direction.
 """
 
 from __future__ import annotations

@@ -123,7 +123,7 @@ def _held(path: Path) -> int:
 def _head(file: Path, kind: str) -> dict[str, Any]:
     head = json.loads(read_bytes(file, f"the description of {'an array' if kind == 'array' else 'a group'}", MOST_HEAD))
     if head["zarr_format"] != 3 or head["node_type"] != kind:
-        raise _NotReadError(f"{file.parent.name} is no {kind} of zarr 3")
+        raise _NotReadError(f"{file.parent.name} is not a zarr 3 {kind}")
     return dict(head)
 
 

@@ -54,7 +54,7 @@ def share(
     """Share the holes of a part among robots: each to the robot that has the greatest margin on it.
 
     Args:
-        jobs: one a robot. A hole of the same id is the same hole of the part: it lies at the same place of the part
+        jobs: one per robot. A hole of the same id is the same hole of the part: it lies at the same place of the part
             frame, and each job says where the part stands as seen from its robot.
         balance: no robot takes more than an even share of the holes, or no more above it than it must; among such
             shares the least margin counts first, then the sum of the margins.
@@ -65,7 +65,7 @@ def share(
         InputError: fewer than two jobs, a hole that is not the same in two jobs, a hole with a given motion.
     """
     if len(jobs) < 2:
-        raise InputError(f"{len(jobs)} job", where="jobs", accepted="two jobs or more, one a robot")
+        raise InputError(f"{len(jobs)} job", where="jobs", accepted="two jobs or more, one per robot")
     ids = tuple(dict.fromkeys(hole.id for job in jobs for hole in job.holes))
     _check_same(jobs)
     asked = [(r, hole) for r, job in enumerate(jobs) for hole in job.holes]

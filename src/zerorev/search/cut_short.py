@@ -92,7 +92,7 @@ def _moved(
     psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
     legs = Legs(np.array([[0.0, depth]] * 2), psi)
     rules = constraints(robot, settings, min_rate, steepest=settings.max_twist if settings.legs == "free" else np.inf)
-    moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, looks=POINTS)
+    moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, samples=POINTS)
     if lack > ENOUGH_LACK:
         return None
     return order.candidate(motion_of(moved, periodic=settings.psi_bound is None), branch)

@@ -33,9 +33,9 @@ __all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_of", "deepest_stroke
 
 FIRST_DEPTH = 0.06  # of the stretched arm's length: about what a middling hole allows
 STEP = 1.5  # from one depth of the coarse sample to the next
-MOST_LOOKS = 16
+MOST_DEPTHS = 16
 SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
-LOOKS = 9  # points of a leg
+SAMPLES = 9  # points of a leg
 WORTH_RAISING = 1e-4  # relative
 ROUGH, ENOUGH = 1e-6, 1e-7  # relative: a smaller gain does not count
 ENOUGH_LACK = 1e-6  # [rad/m]
@@ -165,7 +165,7 @@ class _Search:
     def run(self) -> Deepest:
         """Look coarsely at growing depths, then go from the deepest that seem possible to the end of each valley."""
         ends: list[_End] = []
-        for depth, found in reversed(self._looks()):
+        for depth, found in reversed(self._samples()):
             for start in self._starts(depth, found):
                 ends += self._deepened(start, max((end.legs.depth for end in ends), default=0.0))
             if any(end.legs.depth >= depth for end in ends):
@@ -187,26 +187,26 @@ class _Search:
                 return settled
         return Deepest(0.0)
 
-    def asked(self, depth: float) -> Constraints:
+    def constraints_at(self, depth: float) -> Constraints:
         """What legs of a depth are held to."""
         return self.rules._replace(depth=depth, steepest=min(LONGEST_TWIST / depth, self.rules.steepest))
 
-    def _looks(self) -> list[tuple[float, Array]]:
-        """Depths at which some pair may do, least first, and what coarse samples found there, shape (4, K, LOOKED)."""
+    def _samples(self) -> list[tuple[float, Array]]:
+        """Depths at which some pair may do, least first, and what coarse samples found there, shape (4, K, SAMPLED)."""
         depth = FIRST_DEPTH * self.stretched
         found = self._look(depth, self._every_other())
         while not self._alive(found).any() and depth > SHALLOWEST * self.stretched:
             depth /= STEP
             found = self._look(depth, self._every_other())
-        looks: list[tuple[float, Array]] = []
-        while self._alive(found).any() and len(looks) < MOST_LOOKS:
-            looks.append((depth, found))
+        samples: list[tuple[float, Array]] = []
+        while self._alive(found).any() and len(samples) < MOST_DEPTHS:
+            samples.append((depth, found))
             depth *= STEP
             found = self._look(depth, self._around(self._alive(found)))
-        return looks
+        return samples
 
     def _alive(self, found: Array) -> npt.NDArray[np.bool_]:
-        return np.asarray(found[..., pairs.MARGIN_LOOKED] > self.min_rate)
+        return np.asarray(found[..., pairs.MARGIN_SAMPLED] > self.min_rate)
 
     def _every_other(self) -> npt.NDArray[np.bool_]:
         """Every other line of the grid, shape (8, K): enough as long as much is alive."""
@@ -221,13 +221,17 @@ class _Search:
         return np.asarray(self.branches[:, None] & np.repeat(alive, 2, axis=0))
 
     def _look(self, depth: float, lines: npt.NDArray[np.bool_]) -> Array:
-        out, asked, keep = np.empty((4, self.psi.size, pairs.LOOKED)), self.asked(depth), np.ones(6, dtype=bool)
-        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, legs.TRAVEL, self.min_rate, out)
+        out, wanted, keep = (
+            np.empty((4, self.psi.size, pairs.SAMPLED)),
+            self.constraints_at(depth),
+            np.ones(6, dtype=bool),
+        )
+        pairs.sample_line(self.arm, self.plane, self.psi, lines, keep, wanted, legs.TRAVEL, self.min_rate, out)
         return out
 
     def _starts(self, depth: float, found: Array) -> list[_Start]:
         """Pairs at the local maxima of what the margin may be, over the spins of the grid, highest first."""
-        margin = np.where(self._alive(found), found[..., pairs.MARGIN_LOOKED], -np.inf)
+        margin = np.where(self._alive(found), found[..., pairs.MARGIN_SAMPLED], -np.inf)
         peaks = margin > -np.inf
         for away in (1, 2):  # two, where every other line was left out
             left, right = np.roll(margin, away, axis=1), np.roll(margin, -away, axis=1)
@@ -236,7 +240,7 @@ class _Search:
             peaks &= (margin >= left) & (margin > right)
         starts = []
         for posture, n in sorted(np.argwhere(peaks).tolist(), key=lambda peak: (-margin[*peak], peak)):
-            psi = self.psi[n] + depth * np.append(0.0, found[posture, n, pairs.SLOPES_LOOKED :])
+            psi = self.psi[n] + depth * np.append(0.0, found[posture, n, pairs.SLOPES_SAMPLED :])
             starts.append(_Start(posture, Legs(np.array([[0.0, depth]] * 2), psi[[[0, 1], [0, 2]]])))
         return starts
 
@@ -247,7 +251,7 @@ class _Search:
             return []
         # limits seldom bind: what is deepest without them is often within them, and nothing is deeper
         deepest, _ = self._go(
-            2 * start.posture, sense, self.unlimited, start.legs, "depth", LOOKS, enough=ROUGH, weighed=True
+            2 * start.posture, sense, self.unlimited, start.legs, "depth", SAMPLES, enough=ROUGH, weighed=True
         )
         ends = []
         valley = start.posture, round(deepest.depth / self.stretched, 4), round(float(deepest.psi[0, 0]), 3)
@@ -256,34 +260,36 @@ class _Search:
             for branch in (2 * start.posture, 2 * start.posture + 1):
                 if not self.branches[branch]:
                     continue
-                _, lack = self._go(branch, sense, self.rules, deepest, "depth", LOOKS, steps=0, weighed=True)
+                _, lack = self._go(branch, sense, self.rules, deepest, "depth", SAMPLES, steps=0, weighed=True)
                 if lack <= ENOUGH_LACK:
                     ends.append(_End(deepest, branch, sense))
                     continue
                 # which limit is met first depends on where one comes from, so from shorter legs, too
                 for begin in (start.legs, _shortened(start.legs, SHORTER)):
-                    legs, lack = self._go(branch, sense, self.rules, begin, "depth", LOOKS, enough=ROUGH, weighed=True)
+                    legs, lack = self._go(
+                        branch, sense, self.rules, begin, "depth", SAMPLES, enough=ROUGH, weighed=True
+                    )
                     if lack <= ENOUGH_LACK:
                         ends.append(_End(legs, branch, sense))
         return ends
 
     def _go(
-        self, branch: int, sense: Array, rules: Constraints, legs: Legs, goal: Goal, looks: int, *, steps: int = STEPS,
-        enough: float = ENOUGH, weighed: bool = False,
+        self, branch: int, sense: Array, rules: Constraints, legs: Legs, goal: Goal, samples: int, *,
+        steps: int = STEPS, enough: float = ENOUGH, weighed: bool = False,
     ) -> tuple[Legs, float]:  # fmt: skip
         return improved(
             self.arm, self.plane, branch, sense, rules, legs, goal,
-            looks=looks, steps=steps, enough=enough, weighed=weighed,
+            samples=samples, steps=steps, enough=enough, weighed=weighed,
         )  # fmt: skip
 
     def _settled(self, end: _End) -> Deepest | None:
         """The deepest stroke of a valley whose motion, followed closely, has no reversal."""
         rules = self.rules._replace(min_rate=self.min_rate + SPARE)
-        for looks, shares in CLOSER:
-            deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", looks, weighed=True)
+        for samples, shares in CLOSER:
+            deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", samples, weighed=True)
             for kept_back in shares:
                 room = _shortened(deepest, 1 - kept_back)
-                room, _ = self._go(end.branch, end.sense, rules, room, "margin", looks)
+                room, _ = self._go(end.branch, end.sense, rules, room, "margin", samples)
                 profile = motion_of(room, periodic=self.psi_bound is None)
                 score = evaluated(self.drilling.deep(room.depth), profile, end.branch).score
                 if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:

@@ -79,7 +79,9 @@ class _FreeLegs:
         self.reach = robot.reach
         self.coarse = _grain(self.reach, 1, 1e-3)
         self.fine = _grain(self.reach, 3, 1e-6)
-        self.held = constraints(robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist)
+        self.constraints = constraints(
+            robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
+        )
         self.longest = 2 * self.reach
         self.periodic = settings.psi_bound is None
         self.psi = target_spins(settings.psi_bound, GRID)
@@ -91,7 +93,7 @@ class _FreeLegs:
         """How deep two legs get; the tubes are left as made."""
         return float(
             kernels.depth_at(
-                self.arm, self.plane, branch, psi_t, self.held, self.fine, longest,
+                self.arm, self.plane, branch, psi_t, self.constraints, self.fine, longest,
                 self.room, self.tubes, self.rows, self.sense, self.at_target,
             )
         )  # fmt: skip
@@ -102,7 +104,7 @@ class _FreeLegs:
         grain = self.fine._replace(step=min(self.fine.step, depth / ROWS))
         return float(
             kernels.value_at(
-                self.arm, self.plane, branch, psi_t, self.held, grain, depth, mode,
+                self.arm, self.plane, branch, psi_t, self.constraints, grain, depth, mode,
                 self.room, self.tubes, self.rows, self.sense, self.at_target,
             )
         )  # fmt: skip
@@ -110,7 +112,7 @@ class _FreeLegs:
     def scan(self, longest: float) -> Array:
         """Depths on the grid of spins at the target, shape (8, K)."""
         out = np.empty((8, self.psi.size))
-        kernels.scan(self.arm, self.plane, self.psi, self.branches, self.held, self.coarse, longest, WORTH, out)
+        kernels.scan(self.arm, self.plane, self.psi, self.branches, self.constraints, self.coarse, longest, WORTH, out)
         return out
 
     def around(self, psi_t: float) -> tuple[float, float]:
@@ -156,15 +158,15 @@ class _FreeLegs:
             side, rows = (1 - 2 * k) * self.sense, self.tubes[k, : self.rows[k]]
             viable = np.empty((len(rows), 2))
             viable[-1] = self.ends(branch, side, rows[-1])
-            args = self.arm, self.plane, branch // 2, side, self.held, rows, len(rows), self.room, viable
+            args = self.arm, self.plane, branch // 2, side, self.constraints, rows, len(rows), self.room, viable
             if not segments.narrow(*args):
                 return None
             tubes.append(rows)
             narrowed.append(viable)
         better = legs_through(tubes, narrowed, count)
-        held, sense = self.held, self.sense.copy()
+        given, sense = self.constraints, self.sense.copy()
         for guard in GUARDS:
-            rules = held._replace(min_rate=held.min_rate + guard + GUARD)
+            rules = given._replace(min_rate=given.min_rate + guard + GUARD)
             better, lack = improved(self.arm, self.plane, branch, sense, rules, better, goal)
             if lack > GUARD:
                 return None
@@ -177,7 +179,7 @@ class _FreeLegs:
     def ends(self, branch: int, side: Array, row: Array) -> tuple[float, float]:
         """The spins around that of least travel at which a leg may end within the limits."""
         psi, travel = np.empty((2, tube.KEPT, kernels.ENDS))
-        kernels.ends_within(self.arm, self.plane, branch, side, self.at_target, self.held, row, psi, travel)
+        kernels.ends_within(self.arm, self.plane, branch, side, self.at_target, self.constraints, row, psi, travel)
         k, n = (int(at) for at in np.unravel_index(np.argmin(travel), travel.shape))
         within = np.isfinite(travel[k])
         last = n + int(np.argmin(np.append(within[n:], False))) - 1

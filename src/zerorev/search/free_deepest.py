@@ -125,11 +125,13 @@ class _Search:
     def __init__(self, drilling: Drilling, settings: Settings, effort: Effort) -> None:
         self.drilling, self.settings, self.effort = drilling, settings, effort
         robot = drilling.robot
-        self.held = constraints(robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist)
+        self.constraints = constraints(
+            robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
+        )
         branches = np.array([drilling.hole.branch in (None, branch) for branch in range(8)])
-        self.viable = Viable(robot.arm, drilling.plane, self.held, branches, robot.reach, effort.rows)
+        self.viable = Viable(robot.arm, drilling.plane, self.constraints, branches, robot.reach, effort.rows)
         self.beyond: Legs | None = None  # what passed a limit last
-        self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.LOOKS))
+        self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.SAMPLES))
 
     def best(self, pairs: list[Pair], enough: float) -> Deepest:
         """The deepest motion of some pairs, if it is deeper than `enough`: depth, profile and branch."""
@@ -153,7 +155,7 @@ class _Search:
         for curves in self.series(pair):
             if curves.depth <= depth:
                 break
-            self.viable.held = self.held._replace(steepest=curves.steepest)
+            self.viable.constraints = self.constraints._replace(steepest=curves.steepest)
             self.viable.bound(pair.family, pair.branch, True, curves.grain)
             found = self.polyline(pair, curves)
             if found is None and self.beyond is not None:
@@ -169,8 +171,8 @@ class _Search:
         candidate with every greater one.
         """
         found: list[_Curves] = []
-        for steepest in (self.held.steepest, *_gentler(self.held.steepest, self.viable.stretched)):
-            self.viable.held = self.held._replace(steepest=steepest)
+        for steepest in (self.constraints.steepest, *_gentler(self.constraints.steepest, self.viable.stretched)):
+            self.viable.constraints = self.constraints._replace(steepest=steepest)
             found.append(self.alone(pair))
             if found[-1].depth < NEARLY * found[0].depth:
                 break
@@ -188,7 +190,7 @@ class _Search:
         grain = Grain.of(bound, sets.rows)
         bound = sets.bound(pair.family, pair.branch, True, grain)
         depth = sets.depth(pair.family, pair.branch, True, grain, SHALLOWEST * bound, bound) if bound > 0 else 0.0
-        return _Curves(depth, sets.held.steepest, grain)
+        return _Curves(depth, sets.constraints.steepest, grain)
 
     def polyline(self, pair: Pair, curves: _Curves) -> Profile | None:
         """The deepest motion of straight segments that is found, given how deep curves get."""
@@ -198,7 +200,7 @@ class _Search:
         if part is None:
             return None
         for guard in self.effort.guards:
-            guarded = self.viable.held._replace(min_rate=self.held.min_rate + guard)
+            guarded = self.viable.constraints._replace(min_rate=self.constraints.min_rate + guard)
             deepest = self.closed_in(pair, guarded, grain, part, depth)
             for back in KEPT_BACK:
                 legs = self.legs(pair, guarded, grain, part, deepest * (1 - back))
@@ -244,8 +246,8 @@ class _Search:
             tube = tuple(each[k] for each in sets.viable.raw)
             path, corridor = np.empty(rows), np.empty((rows, 2))
             kernels.follow(
-                sets.arm, sets.plane, pair.branch, (1 - 2 * k) * pair.family.sense, sets.held, grain, tube, rows, psi_t,
-                sets.room, path, corridor,
+                sets.arm, sets.plane, pair.branch, (1 - 2 * k) * pair.family.sense, sets.constraints, grain, tube, rows,
+                psi_t, sets.room, path, corridor,
             )  # fmt: skip
             out[k] = breakpoints_of(tube[0][:rows], path, self.effort.segments)
         return out
@@ -269,7 +271,7 @@ class _Search:
         """See `kernels.polyline.pair_width`; its result, and the viable spins at the breakpoints."""
         sets, spins = self.viable, np.empty((*part.shape, 2))
         wide = kernels.pair_width(
-            sets.arm, sets.plane, pair.branch, pair.family.sense, sets.held, guarded, True, grain, depth, part,
+            sets.arm, sets.plane, pair.branch, pair.family.sense, sets.constraints, guarded, True, grain, depth, part,
             self.shares, sets.room, sets.reached.raw, sets.reached.rows, sets.viable.raw, sets.viable.rows, spins,
             sets.overlap,
         )  # fmt: skip

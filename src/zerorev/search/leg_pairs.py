@@ -162,7 +162,7 @@ class LegPairs:
             sides: what the legs are held to.
             slopes: in order, for each row, shape (R, M).
             least: motion threshold [rad/m].
-            fine: whether to look closely.
+            fine: whether to sample closely.
         """
         nodes, ends = (FINE_NODES, FINE_ENDS) if fine else (NODES, ENDS)
         rows = np.arange(len(slopes))
@@ -217,7 +217,7 @@ class LegPairs:
         low = np.minimum(legs.low[:, None], other.low)
         high = np.maximum(legs.high[:, None], other.high)
         limits = self.drilling.robot.limits
-        turns, fits = turns_within(low, high, self.held(LIMIT_SLACK), self.settings.near_joints)
+        turns, fits = turns_within(low, high, self.limits(LIMIT_SLACK), self.settings.near_joints)
         distance = np.minimum(low + turns - limits.lower, limits.upper - high - turns)
         gentler = np.minimum(np.abs(legs.slope[:, None]), np.abs(other.slope))  # the plunge, see `straight_motion`
         measures = Measures(
@@ -247,7 +247,7 @@ class LegPairs:
                 slopes = float(one.slope[n]), float(other.slope[m])
                 yield Point(float(cost[n, m]), sides.branch, float(sides.psi_t[row]), slopes)
 
-    def held(self, slack: float) -> JointLimits:
+    def limits(self, slack: float) -> JointLimits:
         """The limits with a little kept to them [rad]."""
         limits = self.drilling.robot.limits
         return JointLimits(limits.lower + slack, limits.upper - slack, limits.speed)

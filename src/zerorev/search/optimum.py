@@ -115,9 +115,9 @@ def alternatives(drilling: Drilling, settings: Settings) -> list[Candidate]:
     """
     order = Order(drilling, settings)
     bolder = [settings.min_rate * share + LEAST_RATE * times for share, times in MORE_MARGIN]
-    asked = [replace(settings, min_rate=rate) for rate in bolder]
-    asked.append(replace(settings, objective="margin", weights=()))
-    found = [best_motion(drilling, other) for other in asked]
+    variants = [replace(settings, min_rate=rate) for rate in bolder]
+    variants.append(replace(settings, objective="margin", weights=()))
+    found = [best_motion(drilling, other) for other in variants]
     branches = range(8) if drilling.hole.branch is None else ()
     found += [best_motion(drilling.on_branch(branch), settings) for branch in branches]
     judged = (order.candidate(one.profile, one.branch) for one in found if one is not None)

@@ -68,7 +68,7 @@ class Problem:
         """Those that are searched, of 0..7."""
         return list(range(8)) if self.drilling.hole.branch is None else [self.drilling.hole.branch]
 
-    def asked(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Constraints:
+    def constraints(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Constraints:
         """What the legs are held to."""
         return constraints(
             self.drilling.robot,
@@ -89,7 +89,7 @@ class Problem:
             "plunge_rotation": legs.PLUNGE_ROTATION,
         }[settings.objective]
         mean_rule = settings.min_rate_rule == "mean"
-        return self.asked(settings.min_rate, mean_rule=mean_rule, turn_inside=turn_inside), mode
+        return self.constraints(settings.min_rate, mean_rule=mean_rule, turn_inside=turn_inside), mode
 
     def found(self, branch: int, psi_t: float, slopes: tuple[float, float]) -> Candidate | None:
         """The motion of two legs out of one spin at the target, evaluated; None where it cannot be run."""

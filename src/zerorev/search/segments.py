@@ -87,7 +87,7 @@ def improved(
     legs: Legs,
     goal: Goal,
     *,
-    looks: int = 9,
+    samples: int = 9,
     steps: int = STEPS,
     enough: float = ENOUGH,
     weighed: bool = False,
@@ -103,7 +103,7 @@ def improved(
         legs: to begin with; they need not keep the rules.
         goal: `depth`: as deep as can be; the others keep the depth: least `travel`, greatest `margin`, or the least
             `plunge_rotation` of the two.
-        looks: points of a segment at which the joints are examined.
+        samples: points of a segment at which the joints are examined.
         steps: at most.
         enough: less gain than this, relative, is none.
         weighed: see `kernels.slp.better`.
@@ -113,7 +113,7 @@ def improved(
         none does, inf where the legs to begin with cannot be run.
     """
     standoff, psi = legs.standoff.copy(), legs.psi.copy()
-    shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, looks))
+    shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, samples))
     lack = slp.better(arm, plane, branch, sense, rules, GOALS[goal], shares, steps, enough, weighed, standoff, psi)
     return Legs(standoff, psi), float(lack)
 

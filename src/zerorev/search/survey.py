@@ -46,12 +46,12 @@ def survey(problem: Problem) -> Array:
         problem: what is asked.
     """
     out = np.empty((8, problem.psi.size, 5))
-    asked, mode = problem.objective()
+    constraints, mode = problem.objective()
     branches = np.isin(np.arange(8), problem.branches)
     arm, plane, psi = problem.drilling.robot.arm, problem.plane, problem.psi
     fan = _fan(psi.size)
-    fans.follow(arm, plane, psi, problem.asked(0.0), COARSE_NODES, branches, fan)
-    fans.survey(arm, plane, psi, fan, problem.weights, asked, mode, branches, out)
+    fans.follow(arm, plane, psi, problem.constraints(0.0), COARSE_NODES, branches, fan)
+    fans.survey(arm, plane, psi, fan, problem.weights, constraints, mode, branches, out)
     return out
 
 
@@ -113,8 +113,10 @@ def _searched(
     search: Any, problem: Problem, branch: int, seed: Array, step: float, nodes: int
 ) -> tuple[Candidate | None, Array]:
     """Where a compass search ends, and cost, lack and value there as the nodes see them."""
-    (asked, mode), best, point = problem.objective(), np.empty(3), seed.copy()
-    search(problem.drilling.robot.arm, problem.plane, branch, point, step, problem.weights, asked, mode, nodes, best)
+    (constraints, mode), best, point = problem.objective(), np.empty(3), seed.copy()
+    search(
+        problem.drilling.robot.arm, problem.plane, branch, point, step, problem.weights, constraints, mode, nodes, best
+    )
     return problem.found(branch, point[0], (point[1], point[2])), best
 
 

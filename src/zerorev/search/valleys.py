@@ -91,40 +91,42 @@ class Valleys:
             keep: whether a joint is to keep its direction, shape (6,).
             turn_inside: whether the others may turn within a leg, too, and not at the target alone.
         """
-        asked, mode = self.problem.objective(turn_inside=turn_inside)
-        pair = min(self._bottoms(keep, asked, mode), default=None)
+        constraints, mode = self.problem.objective(turn_inside=turn_inside)
+        pair = min(self._bottoms(keep, constraints, mode), default=None)
         # at the mean rule, too, it is the points that must not turn round
-        least = self.problem.asked(0.0, turn_inside=turn_inside)
-        if pair is None and asked.min_rate > least.min_rate:
+        least = self.problem.constraints(0.0, turn_inside=turn_inside)
+        if pair is None and constraints.min_rate > least.min_rate:
             # the threshold cannot be met: the greatest margin that can
-            asked, mode = least, legs.GREATEST_MARGIN
-            pair = min(self._bottoms(keep, asked, mode), default=None)
-        return None if pair is None else self._polished(keep, asked, mode, pair)
+            constraints, mode = least, legs.GREATEST_MARGIN
+            pair = min(self._bottoms(keep, constraints, mode), default=None)
+        return None if pair is None else self._polished(keep, constraints, mode, pair)
 
     def _can_keep(self, keep: Mask) -> bool:
         """Whether any motion keeps these joints: most sets are tried in vain, and once is enough."""
         if (keep & self._hopeless).any():
             return False
-        asked = self.problem.asked(0.0, turn_inside=True)
-        return next(self._bottoms(keep, asked, legs.GREATEST_MARGIN), None) is not None
+        constraints = self.problem.constraints(0.0, turn_inside=True)
+        return next(self._bottoms(keep, constraints, legs.GREATEST_MARGIN), None) is not None
 
     @cached_property
     def _hopeless(self) -> Mask:
         """Joints that cannot be kept even on their own, as far as the coarse sample can tell, shape (6,)."""
-        asked = self.problem.asked(0.0, turn_inside=True)
-        return np.array([not (self._look(alone, asked, legs.TRAVEL)[1] > 0).any() for alone in np.eye(6, dtype=bool)])
+        constraints = self.problem.constraints(0.0, turn_inside=True)
+        return np.array(
+            [not (self._look(alone, constraints, legs.TRAVEL)[1] > 0).any() for alone in np.eye(6, dtype=bool)]
+        )
 
-    def _look(self, keep: Mask, asked: Constraints, mode: int) -> tuple[Array, Array, Array]:
+    def _look(self, keep: Mask, constraints: Constraints, mode: int) -> tuple[Array, Array, Array]:
         """What a coarse sample finds at every spin of the grid, in each posture, shapes (4, K); see `kernels.pairs`."""
-        out = np.empty((4, self.psi.size, pairs.LOOKED))
+        out = np.empty((4, self.psi.size, pairs.SAMPLED))
         lines = np.repeat(self.branches[:, None], self.psi.size, axis=1)
-        pairs.look(self.arm, self.plane, self.psi, lines, keep, asked, mode, -np.inf, out)
+        pairs.sample_line(self.arm, self.plane, self.psi, lines, keep, constraints, mode, -np.inf, out)
         value, margin, guess = np.moveaxis(out[..., :3], -1, 0)
         return value, margin, guess
 
-    def _bottoms(self, keep: Mask, asked: Constraints, mode: int) -> Iterator[_Pair]:
+    def _bottoms(self, keep: Mask, constraints: Constraints, mode: int) -> Iterator[_Pair]:
         """Descend every valley of the coarse sample that may hold the best pair; each pair improves those before it."""
-        value, margin, guess = self._look(keep, asked, mode)
+        value, margin, guess = self._look(keep, constraints, mode)
         # between the grid's spins, too, the margin may just be enough
         peaks = [(np.inf, -margin[p, n], p, n) for p, n in self._peaks(margin)]
         if mode == legs.GREATEST_MARGIN:
@@ -137,7 +139,7 @@ class Valleys:
         descended: list[tuple[int, float, float]] = []  # posture, and the spins between which all was examined
         for examined, (rough, _, posture, n) in enumerate(sorted(valleys)):
             spin = self.psi[n]
-            if vain == patience or not self._may_reach(margin, posture, n, asked.min_rate):
+            if vain == patience or not self._may_reach(margin, posture, n, constraints.min_rate):
                 continue
             if best is not None and mode != legs.GREATEST_MARGIN and keep.all():
                 if examined >= CANDIDATES and rough < np.inf:
@@ -147,11 +149,11 @@ class Valleys:
             if any(posture == other and low <= spin <= high for other, low, high in descended):
                 continue
             bound = np.inf if best is None else best.value
-            pair = self._descend(keep, asked, mode, posture, n, bound)
+            pair = self._descend(keep, constraints, mode, posture, n, bound)
             if pair is None and rough < np.inf:
                 # the limits cut the bottom off, which the grid does not know in full: where the valley begins to do
-                shoulders = self._shoulders(keep, asked, mode, value[posture], posture, n)
-                pairs_there = [self._descend(keep, asked, mode, posture, m, bound) for m in shoulders]
+                shoulders = self._shoulders(keep, constraints, mode, value[posture], posture, n)
+                pairs_there = [self._descend(keep, constraints, mode, posture, m, bound) for m in shoulders]
                 pair = min((one for one in pairs_there if one is not None), default=None)
             vain += pair is None
             if pair is not None:
@@ -181,14 +183,16 @@ class Valleys:
         variation = max((abs(row[n] - value) for value in known), default=np.inf)
         return bool(row[n] + 2 * variation >= wanted)
 
-    def _descend(self, keep: Mask, asked: Constraints, mode: int, posture: int, n: int, bound: float) -> _Pair | None:
+    def _descend(
+        self, keep: Mask, constraints: Constraints, mode: int, posture: int, n: int, bound: float
+    ) -> _Pair | None:
         """The bottom of the valley around one spin of the grid."""
-        return self._followed(keep, asked, mode, posture, self.psi[n], self.step, NODES, DESCENT_STEPS, bound)
+        return self._followed(keep, constraints, mode, posture, self.psi[n], self.step, NODES, DESCENT_STEPS, bound)
 
     def _followed(
         self,
         keep: Mask,
-        asked: Constraints,
+        constraints: Constraints,
         mode: int,
         posture: int,
         spin: float,
@@ -199,13 +203,15 @@ class Valleys:
     ) -> _Pair | None:
         """The best pair around a spin; a valley that is lowest at the edge of the examined spins continues beyond."""
         for _ in range(MOST_SHIFTS):
-            pair = self._bottom(keep, asked, mode, posture, spin - around, spin + around, nodes, steps, bound)
+            pair = self._bottom(keep, constraints, mode, posture, spin - around, spin + around, nodes, steps, bound)
             if pair is None or abs(pair.psi_t - spin) < 0.98 * around:
                 break
             spin = pair.psi_t
         return pair
 
-    def _shoulders(self, keep: Mask, asked: Constraints, mode: int, value: Array, posture: int, n: int) -> list[int]:
+    def _shoulders(
+        self, keep: Mask, constraints: Constraints, mode: int, value: Array, posture: int, n: int
+    ) -> list[int]:
         """The nearest spins of the grid to either side of one, within its valley, that have an admissible pair."""
         found, row, work = [], np.empty(pairs.COLUMNS), np.empty(ROOM)
         for side in (-1, 1):
@@ -214,8 +220,8 @@ class Valleys:
                 if not (self.periodic or 0 <= m < self.psi.size) or value[m % self.psi.size] == np.inf:
                     break
                 pairs.best_pair(
-                    self.arm, self.plane, posture, self.psi[m % self.psi.size], keep, asked, asked.unlimited(),
-                    self.branches, mode, NODES, np.inf, work, row,
+                    self.arm, self.plane, posture, self.psi[m % self.psi.size], keep, constraints,
+                    constraints.unlimited(), self.branches, mode, NODES, np.inf, work, row,
                 )  # fmt: skip
                 if np.isfinite(row[pairs.VALUE]):
                     found.append(m % self.psi.size)
@@ -225,7 +231,7 @@ class Valleys:
     def _bottom(
         self,
         keep: Mask,
-        asked: Constraints,
+        constraints: Constraints,
         mode: int,
         posture: int,
         low: float,
@@ -239,41 +245,41 @@ class Valleys:
             low, high = max(low, self.psi[0]), min(high, self.psi[-1])
         row = np.empty(pairs.COLUMNS)
         pairs.descend(
-            self.arm, self.plane, posture, low, high, keep, asked, asked.unlimited(), self.branches, mode,
+            self.arm, self.plane, posture, low, high, keep, constraints, constraints.unlimited(), self.branches, mode,
             nodes, steps, bound, row,
         )  # fmt: skip
         return _Pair.of(row) if np.isfinite(row[pairs.VALUE]) else None
 
-    def _polished(self, keep: Mask, asked: Constraints, mode: int, pair: _Pair) -> Candidate | None:
+    def _polished(self, keep: Mask, constraints: Constraints, mode: int, pair: _Pair) -> Candidate | None:
         """The pair followed on finer legs; the threshold is raised a little where the located extremes are below it."""
-        goal = asked.min_rate
+        goal = constraints.min_rate
         # nobody asked for the floor: half of it is enough
         enough = goal * (1 - 1e-9) if goal > LEAST_RATE else 0.5 * goal
         # few points predict the travel of a leg to some 0.1 %, and so where a flat valley is lowest only roughly
-        pair = self._nearby(keep, asked, mode, pair, POLISH_STEPS, CLOSE) or pair
+        pair = self._nearby(keep, constraints, mode, pair, POLISH_STEPS, CLOSE) or pair
         found, shy, more = None, LIMIT_SLACK, LEAST_MORE
         for _ in range(6):
             found = self._motion(pair)
             if found is None:
                 # over a limit by what the nodes do not see
                 shy *= 4.0
-                asked = asked._replace(lower=asked.lower + shy, upper=asked.upper - shy)
+                constraints = constraints._replace(lower=constraints.lower + shy, upper=constraints.upper - shy)
             else:
-                least = self._least_rate(found, keep, mean_rule=asked.mean_rule)
+                least = self._least_rate(found, keep, mean_rule=constraints.mean_rule)
                 if least >= enough:
                     break
                 # the lowest point lies between the nodes: raise the threshold by the shortfall, search again
-                asked = asked._replace(min_rate=asked.min_rate + max(goal - least, 0.0) + more)
+                constraints = constraints._replace(min_rate=constraints.min_rate + max(goal - least, 0.0) + more)
                 more *= MORE_AND_MORE
-            pair = self._nearby(keep, asked, mode, pair, AGAIN_STEPS, CLOSEST) or pair
+            pair = self._nearby(keep, constraints, mode, pair, AGAIN_STEPS, CLOSEST) or pair
         return found
 
     def _nearby(
-        self, keep: Mask, asked: Constraints, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
+        self, keep: Mask, constraints: Constraints, mode: int, pair: _Pair, steps: int, close: tuple[float, ...]
     ) -> _Pair | None:
         """The best pair around another, on fine legs, as close to it as possible; `close` in steps of the grid."""
         for around in np.array(close) * self.step:
-            near = self._followed(keep, asked, mode, pair.branch // 2, pair.psi_t, around, FINE_NODES, steps)
+            near = self._followed(keep, constraints, mode, pair.branch // 2, pair.psi_t, around, FINE_NODES, steps)
             if near is not None:
                 return near
         return None

@@ -128,12 +128,12 @@ class Viable:
         self,
         arm: ArmGeometry,
         plane: TwistPlane,
-        held: Constraints,
+        constraints: Constraints,
         branches: npt.NDArray[np.bool_],
         reach: float,
         rows: int = ROWS,
     ) -> None:
-        self.arm, self.plane, self.held, self.branches, self.stretched = arm, plane, held, branches, reach
+        self.arm, self.plane, self.constraints, self.branches, self.stretched = arm, plane, constraints, branches, reach
         self.rows, self.coarse = rows, Grain.of(reach, max(COARSE_ROWS, rows // 2))
         self.room = workspaces()
         self.reached, self.viable, self.overlap = Tubes(), Tubes(), np.empty(2)
@@ -170,8 +170,8 @@ class Viable:
 
     def families(self) -> list[Family]:
         """All families of the target line."""
-        psi = target_spins(self.held.psi_bound or None, GRID)
-        if not self.held.psi_bound:
+        psi = target_spins(self.constraints.psi_bound or None, GRID)
+        if not self.constraints.psi_bound:
             psi = np.append(psi, psi[0] + 2 * np.pi)
         found = []
         for posture in range(4):
@@ -197,8 +197,8 @@ class Viable:
         """About how deep legs of a family get at most [m]; the tubes are left as made: `kernels.viable.pair_bound`."""
         return float(
             kernels.pair_bound(
-                self.arm, self.plane, branch, family.sense, self.held, limited, grain, family.low, family.high, enough,
-                2 * self.stretched, self.room, self.reached.raw, self.reached.rows,
+                self.arm, self.plane, branch, family.sense, self.constraints, limited, grain, family.low, family.high,
+                enough, 2 * self.stretched, self.room, self.reached.raw, self.reached.rows,
             )
         )  # fmt: skip
 
@@ -206,8 +206,8 @@ class Viable:
         """About how deep legs of a family get [m], in the tubes that `bound` has left: `kernels.viable.pair_depth`."""
         return float(
             kernels.pair_depth(
-                self.arm, self.plane, branch, family.sense, self.held, limited, grain, least, most, CLOSE, self.room,
-                self.reached.raw, self.reached.rows, self.viable.raw, self.viable.rows, self.overlap,
+                self.arm, self.plane, branch, family.sense, self.constraints, limited, grain, least, most, CLOSE,
+                self.room, self.reached.raw, self.reached.rows, self.viable.raw, self.viable.rows, self.overlap,
             )
         )  # fmt: skip
 

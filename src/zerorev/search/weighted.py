@@ -133,7 +133,7 @@ class _WeightedLegs(LegPairs):
         everywhere = np.full((2 * P, 2, 6), np.inf)
         sides = Sides(seed.branch, np.repeat(psi_t, 2), np.tile(sense.T, (P, 1)), np.tile(inside.T, (P, 1)), keep,
                        everywhere)  # fmt: skip
-        held = self.held(3 * LIMIT_SLACK)
+        held = self.limits(3 * LIMIT_SLACK)
         at_seed = sides._replace(psi_t=np.full(2, seed.psi_t))
         legs = self.followed(at_seed, np.arange(2), np.array(seed.slopes), 0.0, NODES)
         if legs.row.size < 2:

@@ -88,7 +88,7 @@ def _run_data(run: Rescored) -> dict[str, Any]:
 
 
 def comparison_csv(comparison: Comparison) -> str:
-    """One row a run, as text; what does not apply is left empty."""
+    """One row per run, as text; what does not apply is left empty."""
     runs = [
         {"hole": run.hole, "method": run.method} | _in_columns(dict(plain(_run_data(run)))) for run in comparison.runs
     ]
@@ -106,7 +106,7 @@ def _in_columns(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def comparison_table(comparison: Comparison) -> Table:
-    """One row a method and hole: successes, score, travel, evaluations to the first zero, time."""
+    """One row per method and hole: successes, score, travel, evaluations to the first zero, time."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("hole"), no_wrap=True)
     table.add_column(Text("method"), no_wrap=True)

@@ -62,7 +62,7 @@ def parameter_map(
         samples: steps on the whole path, an even number.
         psi_range: first and last spin of each axis [rad].
         psi_target: spins at the target [rad], shape (M,), instead of K in that range: a slice or a few.
-        threads: how many to use; None: one a core. The map is the same.
+        threads: how many to use; None: one per core. The map is the same.
         progress: called with the number of spins at the target done and in all.
 
     Returns:

@@ -177,13 +177,13 @@ class SampledObjective:
             weighing: weights, motion threshold and choice of turns.
             samples: steps on the whole path, an even number.
             fractions: samples of a leg instead, from 0 at the target to 1 at its outer end, shape (L + 1,).
-            threads: how many to use; None: one a core.
+            threads: how many to use; None: one per core.
 
         Raises:
             InputError: no such samples, or no threads.
         """
         if threads is not None and threads < 1:
-            raise InputError(f"{threads} threads", where="threads", accepted="1 or more, or None for one a core")
+            raise InputError(f"{threads} threads", where="threads", accepted="1 or more, or None for one per core")
         self.drilling, self.weighing, self.threads = drilling, weighing, threads
         self.fractions = even_fractions(samples) if fractions is None else np.ascontiguousarray(fractions, dtype=float)
         _check_fractions(self.fractions)

@@ -21,7 +21,7 @@ def share_out(work: Callable[[slice], None], count: int, threads: int | None = N
     Args:
         work: does its part of the items; no part may depend on what another does.
         count: of items.
-        threads: how many to use; None: as many as Numba would, one a core unless NUMBA_NUM_THREADS says otherwise.
+        threads: how many to use; None: as many as Numba would, one per core unless NUMBA_NUM_THREADS says otherwise.
     """
     threads = threads or config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     if threads == 1:

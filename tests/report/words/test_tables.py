@@ -20,7 +20,7 @@ def shown(*things):
     return console.export_text()
 
 
-def test_one_row_a_hole(published):
+def test_one_row_per_hole(published):
     text = shown(tables.plan_table(published))
     for part in ("6 → 0", "5 → 0", "107.1", "98.5", "90.5", "180.00  178.10  142.49", "infeasible", "0.0018 A6"):
         assert part in text

@@ -97,7 +97,7 @@ def check_a_box(rng, drilled):
     claim = Claim(hole.depth, min_rate, 0.0, None, np.ones(6), 60.0, NO_VALUE)
     with ball_arithmetic():
         legs = Legs(Examiner(robot, tool, hole, claim, posture), box, MID_SHARES)
-        while legs.look_closer():
+        while legs.sample_closer():
             pass
     run = 0
     for _ in range(4):
@@ -141,7 +141,7 @@ def check_a_condition(legs, i, share, way, psi_t, slope):
     at = rates_at(of.arm, of.posture, standoff, (psi.cos(), psi.sin()), root_of, [])
     least = of.threshold if of.threshold > 0 else -of.nil
     truth = way * (at.outwards[i] + arb(slope) * at.spinning[i]) - least * denominators(at)[i]
-    unit = denominators(of.look(extent, share).centre)[i].mid()
+    unit = denominators(of.sample(extent, share).centre)[i].mid()
     middle, by_psi, by_slope = condition
     said = middle + by_psi * (arb(psi_t) - extent.psi) + by_slope * (arb(slope) - extent.slope)
     return said.overlaps(truth / unit)

@@ -37,7 +37,7 @@ def robot_in_cell(
         cells: of a map.
         subtitle: of the map.
         robots: what each posture is called, and its places along the arm [mm], shape (P, 3); the first is at home.
-        named: names of the targets, one a target, or none; where there are many they are left out.
+        named: names of the targets, one per target, or none; where there are many they are left out.
         ax: to draw into, in 3D; None: a figure with a heading.
     """
     figure, axes = style.one_axes(ax, "Targets in the robot's cell", subtitle, 6.6, "3d")

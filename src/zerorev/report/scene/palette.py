@@ -16,7 +16,7 @@ __all__ = [
     "signed",
 ]
 
-# Okabe and Ito's colours, which stay apart for colour-blind eyes; one a joint, the same in every figure
+# Okabe and Ito's colours, which stay apart for colour-blind eyes; one per joint, the same in every figure
 JOINT_COLOURS = ("#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9")
 # the same, dark enough for letters on white
 JOINT_INKS = ("#005a8f", "#8a5f00", "#00694c", "#a84a00", "#99487a", "#1c6d9e")

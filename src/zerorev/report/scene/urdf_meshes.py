@@ -28,7 +28,7 @@ PARALLEL = 1e-3  # [1] between the directions of their axes
 FORMATS = ("stl", "obj", "ply", "glb")
 MOST_TRIANGLES = 400_000
 MOST_MESH = 24 * 2**20  # [bytes] of the file of one
-LOOKS = 12  # joint positions at which the two arms are compared
+SAMPLES = 12  # joint positions at which the two arms are compared
 QUARTERS = (0.0, np.pi / 2, -np.pi / 2, np.pi)  # offsets of a joint that are looked for, the nearest first
 
 
@@ -80,11 +80,11 @@ def _agreed(description: Description, robot: Robot) -> tuple[Array, Array]:
     Of several that agree (a wrist turned half round, and bent the other way) the one of the least offsets is taken. The
     offset of the sixth shows nowhere but in the picture of the flange, and is 0.
     """
-    joints = np.random.default_rng(0).uniform(-1.5, 1.5, (LOOKS, 6))
+    joints = np.random.default_rng(0).uniform(-1.5, 1.5, (SAMPLES, 6))
     lines = _lines(robot, joints)
     reached, found = 0, list[tuple[Array, Array]]()
 
-    def look(i: int, sign: Array, offset: Array) -> None:
+    def sample(i: int, sign: Array, offset: Array) -> None:
         """Compare axis i, where the axes before it agree; the offset of the joint before shows in where it lies."""
         nonlocal reached
         reached = max(reached, i)
@@ -99,9 +99,9 @@ def _agreed(description: Description, robot: Robot) -> tuple[Array, Array]:
             along = np.einsum("ij,ij->i", axis, way)
             apart = np.linalg.norm(np.cross(place - ours, way), axis=1)
             if (np.abs(along) > 1 - PARALLEL).all() and (along * along[0] > 0).all() and apart.max() < AGREE:
-                look(i + 1, np.where(np.arange(6) == i, np.sign(along[0]), sign), tried)
+                sample(i + 1, np.where(np.arange(6) == i, np.sign(along[0]), sign), tried)
 
-    look(0, np.ones(6), np.zeros(6))
+    sample(0, np.ones(6), np.zeros(6))
     if not found:
         raise InputError(
             f"its axis {reached + 1} lies elsewhere than that of {robot.name}", where=str(description.file),

@@ -1,4 +1,4 @@
-"""What the terminal shows of an answer: a row a hole while they are few, the whole in figures where they are many."""
+"""What the terminal shows of an answer: a row per hole while they are few, the whole in figures where they are many."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Shown:
         terminal.print_lines(self.lines())
 
     def table(self) -> Table:
-        """A row a hole or, of many, a row a figure."""
+        """A row per hole or, of many, a row per figure."""
         if len(self._rows) <= ROWS:
             return tables.plan_table(replace(self._plan, holes=tuple(self._rows)))
         table = Table(box=box.SIMPLE_HEAD, pad_edge=False)

@@ -95,7 +95,7 @@ def place_words(place: Array) -> str:
 
 
 def placement_table(job: Job, found: Placement) -> Table:
-    """One row a hole, the worst first: depth needed, deepest as it stands and at the best place."""
+    """One row per hole, the worst first: depth needed, deepest as it stands and at the best place."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in (
         "hole",
@@ -170,7 +170,7 @@ def share_data(jobs: list[Job], shares: Shares) -> dict[str, Any]:
 
 
 def share_table(jobs: list[Job], shares: Shares) -> Table:
-    """One row a hole: the margin of each robot on it, and who takes it."""
+    """One row per hole: the margin of each robot on it, and who takes it."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("hole"))
     for job in jobs:

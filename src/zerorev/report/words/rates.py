@@ -45,7 +45,7 @@ def predicted_data(hole: Hole, predicted: Prediction) -> dict[str, Any]:
 
 
 def predicted_table(job: Job, predicted: Sequence[Prediction]) -> Table:
-    """One row a hole: where zero reversals are cheapest, the critical rates there, and what is predicted."""
+    """One row per hole: where zero reversals are cheapest, the critical rates there, and what is predicted."""
     table = _table(job, "hole", "least twist\npredicted [deg]", "deepest\npredicted [mm]")
     for hole, each in zip(job.holes, predicted, strict=True):
         if each.cheapest is None:
@@ -57,7 +57,7 @@ def predicted_table(job: Job, predicted: Sequence[Prediction]) -> Table:
 
 
 def rates_table(job: Job, rates: Sequence[tuple[Hole, CriticalRates]]) -> Table:
-    """One row a hole and branch in reach: the critical rates at one spin."""
+    """One row per hole and branch in reach: the critical rates at one spin."""
     table = _table(job, "hole")
     for hole, each in rates:
         if each.branch % 2 == 0:  # the two wrist flips share their critical rates

@@ -34,7 +34,7 @@ MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding
 
 
 def plan_table(plan: Plan) -> Table:
-    """One row a hole: reversals, travel, branch, spins, slowest joint, deepest stroke, and the outcome of the check."""
+    """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, outcome of the check."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("hole"), no_wrap=True)
     table.add_column(Text("reversals\nbaseline → plan"), justify="right")
@@ -126,7 +126,7 @@ def slowest(score: Score | None, settings: Settings) -> tuple[float, int] | None
 
 
 def robots_table(robots: Iterable[Robot]) -> Table:
-    """One row a robot: name, maker, model, reach of the wrist centre, joint limits."""
+    """One row per robot: name, maker, model, reach of the wrist centre, joint limits."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "maker", "model"):
         table.add_column(Text(heading), no_wrap=True)
@@ -167,7 +167,7 @@ def robot_heading(robot: Robot) -> Text:
 
 
 def robot_table(robot: Robot) -> Table:
-    """One row a joint: sign, offset, limits, speed."""
+    """One row per joint: sign, offset, limits, speed."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("joint"))
     for heading in ("sign", "offset\n[deg]", "lower\n[deg]", "upper\n[deg]", "speed\n[deg/s]"):

@@ -23,10 +23,10 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
     assert closed <= len(tree.closed)
     lists, rows = tree.lists[:nodes], tree.closed[:closed]
     slopes = slice(bound_nodes.CLOSED_LOW, bound_nodes.CLOSED_HIGH + 1)
-    terms, shares = tree.terms[:nodes].copy(), tree.shares[:nodes, : rules.looks]
-    look = terms[..., bound_multipliers.LOOK].astype(int)
-    terms[..., bound_multipliers.LOOK] = np.take_along_axis(shares, look, axis=1)
-    moved = shares != [bound_boxes.share(rules.looks, 0, look) for look in range(rules.looks)]
+    terms, shares = tree.terms[:nodes].copy(), tree.shares[:nodes, : rules.samples]
+    sample = terms[..., bound_multipliers.SAMPLE].astype(int)
+    terms[..., bound_multipliers.SAMPLE] = np.take_along_axis(shares, sample, axis=1)
+    moved = shares != [bound_boxes.share(rules.samples, 0, sample) for sample in range(rules.samples)]
     return ProofTree(
         claim=Claim(
             depth=rules.depth,

@@ -36,7 +36,7 @@ MOST_REVERSALS = 12.0  # of all joints: what a hole without any motion is search
 TURNS_OF_LEG = 257  # points at which a motion that failed is examined
 MOST_FRESH_CUTS = 8
 SHORT = 0.03  # of the arm's size: on shorter strokes joints hardly change their rates
-LOOKS = 4, 8  # at a box at first
+SAMPLES = 4, 8  # at a box at first
 MORE_TWIST = 1 + 1e-9  # so that rounding leaves no slope out
 
 
@@ -197,9 +197,9 @@ class Prover:
 
     def _advance(self, search: Search) -> int:
         """Resume a search within the budget."""
-        before = search.looks
+        before = search.passes
         reason = search.advance(before + self.budget - self.spent)
-        self.spent += search.looks - before
+        self.spent += search.passes - before
         return reason
 
     def _note(self, search: Search) -> None:
@@ -216,8 +216,8 @@ class Prover:
             # the tapes have sin(q5) >= 0; where joint 5 is counted the other way, A5 < 0 is that one
             flips[:] = np.arange(2) == (branch % 2 if problem.drilling.robot.arm.sign[4] > 0 else 1 - branch % 2)
         weights = problem.weights * self.scale
-        # where joints reverse, more looks show better what they travel
-        (few, many), straight_on = LOOKS, most < problem.weights.min()
+        # where joints reverse, more samples show better how far they travel
+        (few, many), straight_on = SAMPLES, most < problem.weights.min()
         rules = BoundRules(
             depth=problem.drilling.hole.depth,
             min_rate=min_rate,
@@ -228,7 +228,7 @@ class Prover:
             weights=weights,
             most_cost=most * self.scale,
             least_weight=float(weights.min()),
-            looks=few if straight_on and problem.drilling.hole.depth < SHORT * problem.drilling.robot.size else many,
+            samples=few if straight_on and problem.drilling.hole.depth < SHORT * problem.drilling.robot.size else many,
         )
         # a leg travels at least its twist, and a joint that reverses n times at most n + 1 times its range
         ranges, reversals = upper - lower, most / max(float(problem.weights.min()), 1e-3)

@@ -28,7 +28,7 @@ class Tree(NamedTuple):
         heap: numbers of nodes, shape (N,).
         nodes: interval of spins, value, whether the terms are added to the travel (1) or refute (0), shape (N, 4).
         terms: conditions with multipliers, see `kernels.bound_multipliers`, shape (N, MOST_TERMS, TERM).
-        shares: where a box is sampled first, as shares of the depth, shape (N, LOOKS).
+        shares: where a box is sampled first, as shares of the depth, shape (N, SAMPLES).
         lists: posture, where its slopes start and how many they are, how many cuts, parent or -1, shape (N, 5).
         cuts: more stand-offs to be examined, as shares of the depth, shape (N, MOST_CUTS).
         slopes: intervals, shape (S, 2).
@@ -85,9 +85,9 @@ class Search:
         self._work = _room()
 
     @property
-    def looks(self) -> int:
-        """Looks so far, each at `rules.looks` stand-offs of one box."""
-        return int(self.tree.counts[bound_nodes.LOOKS_DONE])
+    def passes(self) -> int:
+        """Passes so far, each at `rules.samples` stand-offs of one box."""
+        return int(self.tree.counts[bound_nodes.PASSES_DONE])
 
     @property
     def bound(self) -> float:
@@ -112,10 +112,10 @@ class Search:
             tree.cuts[node, count : count + fresh.size] = fresh
             tree.lists[node, bound_nodes.CUTS] = count + fresh.size
 
-    def advance(self, most_looks: int) -> int:
+    def advance(self, most_passes: int) -> int:
         """Continue until there is something to report: see `kernels.bound_tree.advance`."""
         while True:
-            reason = int(bound_tree.advance(self.models, self.rules, self.tree, most_looks, self._work))
+            reason = int(bound_tree.advance(self.models, self.rules, self.tree, most_passes, self._work))
             if reason != bound_tree.FULL:
                 return reason
             self.tree = _grown(self.tree)
@@ -133,7 +133,7 @@ def _planted(rules: BoundRules, postures: list[int], twist: float, log: int) -> 
         heap=np.zeros(room, dtype=np.int64),
         nodes=np.zeros((room, bound_nodes.NODE)),
         terms=np.zeros((room, bound_multipliers.MOST_TERMS, bound_multipliers.TERM)),
-        shares=np.zeros((room, bound_boxes.LOOKS)),
+        shares=np.zeros((room, bound_boxes.SAMPLES)),
         lists=np.zeros((room, bound_nodes.LISTED), dtype=np.int64),
         cuts=np.zeros((room, bound_tree.MOST_CUTS)),
         slopes=np.zeros((max(4 * FIRST_ROOM, 2 * count), 2)),
@@ -144,8 +144,8 @@ def _planted(rules: BoundRules, postures: list[int], twist: float, log: int) -> 
     )
     tree.slopes[:count, 0], tree.slopes[:count, 1] = slopes[:-1], slopes[1:]
     tree.counts[bound_nodes.SLOPES] = count
-    looks = rules.looks
-    tree.shares[:first, :looks] = [bound_boxes.share(looks, 0, look) for look in range(looks)]
+    samples = rules.samples
+    tree.shares[:first, :samples] = [bound_boxes.share(samples, 0, sample) for sample in range(samples)]
     numbers = np.arange(first)
     tree.heap[:first] = numbers
     tree.nodes[:first, :2] = np.tile(np.stack([spins[:-1], spins[1:]], axis=1), (len(postures), 1))

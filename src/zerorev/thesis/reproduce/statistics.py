@@ -28,7 +28,7 @@ def mean_interval(values: Array, seed: int = 0) -> Interval:
     """Bootstrapped interval of a mean, at 95 %, of values of shape (n,).
 
     Args:
-        values: independent, one a run.
+        values: independent, one per run.
         seed: of the resampling.
     """
     picks = np.random.default_rng(seed).integers(len(values), size=(RESAMPLES, len(values)))

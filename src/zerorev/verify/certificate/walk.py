@@ -29,7 +29,7 @@ TIGHT = 1e-3  # relative: how far below a rate that is met its bound may lie
 
 
 class LostError(Exception):
-    """The walk cannot go on: the arm is out of reach, or that it is not so cannot be shown.
+    """The walk cannot continue: the arm is out of reach, or that it is not so cannot be shown.
 
     Attributes:
         reason: one sentence.

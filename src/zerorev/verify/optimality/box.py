@@ -110,7 +110,7 @@ class Examiner:
         """What so many turns of each joint cost."""
         return sum(weight * n for weight, n in zip(self.weights, turns, strict=True))
 
-    def look(self, extent: Extent, share: float) -> Look:
+    def sample(self, extent: Extent, share: float) -> Look:
         """A box at a stand-off, given as a share of the depth."""
         standoff = self.depth * arb(share)
         psi, off = extent.psi + standoff * extent.slope, extent.half_at(standoff) * arb(0, 1)

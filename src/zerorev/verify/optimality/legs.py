@@ -51,7 +51,7 @@ class Legs:
         rest = list(more)
         self._steps: list[Callable[[], str | None]] = [self._begin, self._travel]
         self._steps += [partial(self._examine, rest[k : k + CHUNK]) for k in range(0, len(rest), CHUNK)]
-        self._looks: dict[float, Look] = {}
+        self._samples: dict[float, Look] = {}
         self._signs: dict[float, list[int]] = {}
         self._conditions: dict[tuple[int, float, float], tuple[arb, arb, arb]] = {}
         self._met = [0] * 6  # signs that are met: 1, 2, or both
@@ -65,7 +65,7 @@ class Legs:
         steepest = max(abs(box.least), abs(box.most)) * of.claim.depth
         self._stretch = 1.0 if steepest <= FIRST_TURN else FIRST_TURN / steepest
 
-    def look_closer(self) -> bool:
+    def sample_closer(self) -> bool:
         """Examine the box further: the signs, then travel and limits, then more stand-offs; whether there was more."""
         if self.dead is not None or not self._steps:
             return False
@@ -83,8 +83,8 @@ class Legs:
         if found is not None:
             return found
         of, extent = self.of, self.extent
-        look = self._looks.get(share) or of.look(extent, share)
-        series, centre, whole = look.series, look.centre, look.whole
+        sample = self._samples.get(share) or of.sample(extent, share)
+        series, centre, whole = sample.series, sample.centre, sample.whole
         if series is None or centre is None or whole is None:
             return None
         try:
@@ -97,7 +97,7 @@ class Legs:
             return None
         middle = direction * (centre.outwards[i] + extent.slope * centre.spinning[i]) - least * at_centre
         by_psi = direction * (series.outwards[i][1] + extent.slopes * series.spinning[i][1]) - least * den[1]
-        by_slope = direction * whole.spinning[i] + look.standoff * by_psi
+        by_slope = direction * whole.spinning[i] + sample.standoff * by_psi
         found = self._conditions[i, share, direction] = middle / unit, by_psi / unit, by_slope / unit
         return found
 
@@ -112,43 +112,43 @@ class Legs:
     def _examine(self, shares: Iterable[float]) -> str | None:
         """Examine the signs at stand-offs; why the box is dead, or None."""
         for share in shares:
-            if share not in self._looks and (dead := self._look(share)):
+            if share not in self._samples and (dead := self._look(share)):
                 return dead
         self.forth, self.back = self._turned()
         return None
 
     def _travel(self) -> str | None:
         """Find the least travel and the turns within the limits; why the box is dead, or None."""
-        looks = [self._looks[share] for share in sorted(self._looks)]
-        self.least, self.by_psi, self.by_slope, self.turns = travel_of(self.of, self.extent, looks)
+        samples = [self._samples[share] for share in sorted(self._samples)]
+        self.least, self.by_psi, self.by_slope, self.turns = travel_of(self.of, self.extent, samples)
         fits = (all(least <= most for least, most in self.turns[flip]) for flip in self.of.flips)
         return None if any(fits) else "limits"
 
     def _look(self, share: float) -> str | None:
         """Examine the box at a stand-off; why it is dead, or None."""
-        look = self._looks[share] = self.of.look(self.extent, share)
-        if look.beyond:
+        sample = self._samples[share] = self.of.sample(self.extent, share)
+        if sample.beyond:
             return "out of reach"
-        if look.whole is None:
+        if sample.whole is None:
             return None
         signs = self._signs[share] = [
-            self._judge(i, self._rates(i, look), den) for i, den in enumerate(denominators(look.whole))
+            self._judge(i, self._rates(i, sample), den) for i, den in enumerate(denominators(sample.whole))
         ]
         for i in SIX:
             self._met[i] |= (0, 1, 2)[signs[i]]
         turning = any(met == 3 or not (may[0] or may[1]) for met, may in zip(self._met, self.may, strict=True))
         return "signs" if turning and self._least_cost() > self.of.claim.most_cost + 1e-9 else None
 
-    def _rates(self, i: int, look: Look) -> list[arb]:
+    def _rates(self, i: int, sample: Look) -> list[arb]:
         """Enclosures of a joint's rate times its denominator: of plain arithmetic, and of the mean-value form."""
-        extent, whole, series, centre = self.extent, look.whole, look.series, look.centre
+        extent, whole, series, centre = self.extent, sample.whole, sample.series, sample.centre
         assert whole is not None
         N, M = whole.outwards[i], whole.spinning[i]
         rates = [N + extent.slopes * M]
         if series is not None and centre is not None:
             by_psi = series.outwards[i][1] + extent.slopes * series.spinning[i][1]
             middle = centre.outwards[i] + extent.slope * centre.spinning[i]
-            rates.append(middle + by_psi * extent.d_psi + (M + look.standoff * by_psi) * extent.d_slope)
+            rates.append(middle + by_psi * extent.d_psi + (M + sample.standoff * by_psi) * extent.d_slope)
         return rates
 
     def _judge(self, i: int, rates: list[arb], den: arb) -> int:

@@ -147,7 +147,7 @@ class _Check:
             box = rest.pop()
             parts += 1
             legs = self.legs_of(task.node, box)
-            while legs.look_closer():
+            while legs.sample_closer():
                 pass
             if legs.dead is not None:
                 if box is whole:
@@ -228,7 +228,7 @@ class _Check:
         psi, slope = 0.5 * (box.low + box.high), 0.5 * (box.least + box.most)
         more = [*self.tree.cuts[number].tolist(), *MID_SHARES, *DENSE]
         legs = Legs(self.of[int(self.tree.postures[number])], Box(psi, psi, slope, slope), more)
-        while legs.look_closer():
+        while legs.sample_closer():
             pass
         return legs
 
@@ -238,7 +238,7 @@ class _Check:
             value = least_value(one, other, weights)
             if value is None or value >= self.value:
                 return True
-            if not (one.look_closer() | other.look_closer()):
+            if not (one.sample_closer() | other.sample_closer()):
                 return False
 
     def below(self, one: Legs, other: Legs) -> bool:

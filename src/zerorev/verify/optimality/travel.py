@@ -55,10 +55,10 @@ class _Angle(NamedTuple):
 NOWHERE = _Angle(arb(0), arb(0), arb.pos_inf(), arb.pos_inf())
 
 
-def travel_of(of: Examiner, extent: Extent, looks: Sequence[Look]) -> Travel:
-    """Travel and limits, from looks at a box in the order of their stand-offs."""
-    columns = [_angles(of, extent, look) for look in looks]
-    s = [look.standoff for look in looks]
+def travel_of(of: Examiner, extent: Extent, samples: Sequence[Look]) -> Travel:
+    """Travel and limits, from samples of a box in the order of their stand-offs."""
+    columns = [_angles(of, extent, sample) for sample in samples]
+    s = [sample.standoff for sample in samples]
     swept = [of.swept(extent, a, b) for a, b in pairwise(s)]
     turns: tuple[list[tuple[int, int]], list[tuple[int, int]]] = ([], [])
     least, by_psi, by_slope = arb(0), arb(0), arb(0)
@@ -115,13 +115,13 @@ def _fitting(
     return least, most
 
 
-def _angles(of: Examiner, extent: Extent, look: Look) -> list[_Angle]:
+def _angles(of: Examiner, extent: Extent, sample: Look) -> list[_Angle]:
     """The joints at a stand-off."""
-    centre, whole = look.centre, look.whole
+    centre, whole = sample.centre, sample.whole
     if centre is None or whole is None:
         return [NOWHERE] * 6
-    half = extent.half_at(look.standoff)
-    psi = extent.psi + look.standoff * extent.slope
+    half = extent.half_at(sample.standoff)
+    psi = extent.psi + sample.standoff * extent.slope
     there = directions(of.arm, (psi.cos(), psi.sin()), centre)
     by_psi = [M / den for M, den in zip(whole.spinning, denominators(whole), strict=True)]
     steepness = [(slope * half).abs_upper() for slope in by_psi]
