@@ -146,7 +146,7 @@ def test_other_formats_and_broken_meshes_are_refused(robot, tmp_path):
     [
         ("", "not XML"),
         ("<sdf/>", "begins with <sdf>"),
-        ("<robot/>", "0 links"),
+        ("<robot/>", "0 root links"),
         ('<robot><link name="a"/></robot>', "0 moving joints"),
         ('<robot><link name="a"/><joint name="j" type="prismatic"/></robot>', "type 'prismatic'"),
         ('<robot><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
