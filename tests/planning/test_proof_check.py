@@ -160,7 +160,7 @@ class TestTheCommand:
         ("options", "said"),
         [
             (["--proof-sample", "3"], "--proof beside it"),
-            (["--proof", "--proof-sample", "-1"], "no number of boxes"),
+            (["--proof", "--proof-sample", "-1"], "not a number of boxes"),
             (["--proof", "--certify", "--program", "x.src"], "a program states nothing of its optimality"),
         ],
     )
