@@ -12,6 +12,7 @@ pytest.importorskip("nicegui")
 from oracles.published import POSITIONS
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.report.scene.motion_look import curves, held, look
 from zerorev.web.views.curves import options
@@ -20,9 +21,9 @@ P = POSITIONS[0]
 
 
 def chart_of(robot, tool, profile):
-    setting = robot, tool, P.hole
-    found = curves(*setting, profile, P.branch, Settings(), 60)
-    here, constant = (look(*setting, each, P.branch, Settings()) for each in (profile, held(profile)))
+    drilling = Drilling(robot, tool, P.hole)
+    found = curves(drilling, profile, P.branch, Settings(), 60)
+    here, constant = (look(drilling, each, P.branch, Settings()) for each in (profile, held(profile)))
     return options(found, here, constant), here, constant
 
 
