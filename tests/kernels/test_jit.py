@@ -111,9 +111,10 @@ import numpy as np
 import zerorev as zr
 from zerorev.kernels import legs
 from zerorev.kernels.field import ROOM
+from zerorev.motion.drilling import Drilling
 
 robot = zr.read_robot("kuka_kr6_r700_2")
-plane = twist_plane(robot, zr.read_tool("thesis_drill"), zr.Hole("one", [0.5, 0.3, 0.8], [1, 0, 0], 0.01))
+plane = Drilling(robot, zr.read_tool("thesis_drill"), zr.Hole("one", [0.5, 0.3, 0.8], [1, 0, 0], 0.01)).plane
 out = np.full((60, legs.ROWS, 6), np.nan)
 for leg, psi in zip(out, np.linspace(-3, 3, 60)):
     legs.trace_leg(robot.arm, plane, 4, psi, 1.7, 0.05, 24, np.empty(ROOM), leg)
