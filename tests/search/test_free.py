@@ -117,7 +117,7 @@ def falls_with_the_cap(seeds, caps_deg_per_mm):
     for seed in seeds:
         case = random_place(seed)
         caps = [replace(OFF, max_twist=float(np.deg2rad(cap * 1e3))) for cap in caps_deg_per_mm]
-        depths = [deepest_free(*case, settings)[0] for settings in caps]
+        depths = [deepest_free(Drilling(*case), settings)[0] for settings in caps]
         best = np.maximum.accumulate(depths)
         fallen = [1 - depth / most for depth, most in zip(depths, best, strict=True) if most > 0]
         falls[seed] = max(fallen, default=0.0)
