@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, machines, map_app, need
+from zerorev.cli.common import FINE, machines, map_app, need_maps
 from zerorev.report.words import terminal
 
 __all__ = ["run"]
@@ -33,8 +33,7 @@ def run(
         workers: Processes to run it on; by default all cores where it is worth it. The map is the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
     """
-    need("xarray", "xarray", "map", "maps")
-    need("zarr", "zarr", "map", "maps")
+    need_maps("map")
     where = machines(workers, scheduler)
     from zerorev.files.map_file import read_map_file
     from zerorev.files.output import check_folder

@@ -11,8 +11,8 @@ from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.map_task import Question
 from zerorev.model.quantity import Found, quantity
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import turns_within
-from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.search.free_deepest import SEGMENTS
 from zerorev.search.straight import target_spins
 
@@ -103,14 +103,13 @@ def _write(values: Values, n: int, variable: str, found: Found) -> None:
 
 def _why_none(question: Question, hole: Hole) -> int:
     """Whether the target is reached at all, and within the joint limits."""
-    robot, tool = question.robot, question.tool
+    drilling = Drilling(question.robot, question.tool, hole)
 
     def angles(psi_bound: float | None) -> Array:
-        spins = target_spins(psi_bound, SPINS)
-        return inverse(robot, tcp_pose(hole, 0.0, spins) @ np.linalg.inv(tool.T_flange_tcp))
+        return drilling.angles(0.0, target_spins(psi_bound, SPINS))
 
     if np.isnan(angles(None)).all():
         return OUT_OF_REACH
     there = angles(question.settings.psi_bound)
-    _, fits = turns_within(there, there, robot.limits)
+    _, fits = turns_within(there, there, question.robot.limits)
     return NONE if (fits.all(axis=-1) & ~np.isnan(there).any(axis=-1)).any() else LIMITS

@@ -21,7 +21,7 @@ from zerorev.model.profile import Profile
 if TYPE_CHECKING:
     from zerorev.model.map_task import Question
 
-__all__ = ["Found", "Quantity", "in_words", "measured_as", "quantities", "quantity"]
+__all__ = ["Found", "Quantity", "in_words", "quantities", "quantity"]
 
 GROUP = "zerorev.quantities"
 
@@ -103,11 +103,6 @@ def quantity(name: str) -> Quantity:
     if name not in known:
         raise InputError(f"unknown quantity '{name}'", where="quantity", accepted=", ".join(known))
     return known[name]
-
-
-def measured_as(variable: str) -> Quantity | None:
-    """The first quantity of which a dataset holds the number under this name."""
-    return next((each for each in quantities().values() if each.variable == variable), None)
 
 
 def in_words(wanted: Callable[[Quantity], bool], last: str) -> str:

@@ -21,7 +21,6 @@ from zerorev.model.job import Settings
 from zerorev.model.robot import NIL_RATE, JointLimits, Robot
 from zerorev.motion.critical import CriticalRates, bracket, critical
 from zerorev.motion.drilling import Drilling, joint_rates
-from zerorev.motion.kinematics import inverse, tcp_pose
 from zerorev.search.line import golden
 from zerorev.search.straight import LEAST_RATE, target_spins
 
@@ -238,7 +237,7 @@ def _target_line(drilling: Drilling, settings: Settings) -> _TargetLine:
 
 def _angles(drilling: Drilling, spins: Array) -> Array:
     """Joints at the target [rad], turned to where they are farthest from the limits, shape (N, 8, 6)."""
-    angles = inverse(drilling.robot, tcp_pose(drilling.hole, 0.0, spins) @ np.linalg.inv(drilling.tool.T_flange_tcp))
+    angles = drilling.angles(0.0, spins)
     middle = (drilling.robot.limits.lower + drilling.robot.limits.upper) / 2
     return angles + FULL_TURN * np.round((middle - angles) / FULL_TURN)
 

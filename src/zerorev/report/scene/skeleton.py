@@ -9,7 +9,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
-from zerorev.motion.kinematics import forward, inverse, tcp_pose
+from zerorev.motion.kinematics import forward
 
 __all__ = ["home", "joints_at", "skeleton"]
 
@@ -28,8 +28,7 @@ def joints_at(drilling: Drilling, psi: float, branch: int) -> Array | None:
         psi: spin [rad].
         branch: 0..7.
     """
-    T_base_flange = tcp_pose(drilling.hole, 0.0, psi) @ np.linalg.inv(drilling.tool.T_flange_tcp)
-    joints = inverse(drilling.robot, T_base_flange)[branch]
+    joints = drilling.angles(0.0, psi)[branch]
     return None if np.isnan(joints).any() else np.asarray(joints)
 
 
