@@ -31,8 +31,8 @@ from zerorev.files.text import MAX_BYTES, MAX_ROWS
 from zerorev.files.text import MAX_VALUES as JSON_VALUES
 from zerorev.files.urdf import MOST_PARTS, read_urdf
 from zerorev.files.yaml_text import MAX_VALUES
+from zerorev.program.dialects import MOST_BYTES, read_program
 from zerorev.program.export import export
-from zerorev.program.krl.read import MOST_BYTES, read_program
 from zerorev.report.scene.urdf_meshes import MOST_MESH, _loaded
 
 HEAD = "robot: kuka_kr6_r700_2\ntool: thesis_drill\n"

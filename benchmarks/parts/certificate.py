@@ -12,6 +12,7 @@ from benchmarks.table import Goal, Section
 from benchmarks.timing import duration, in_turns
 from zerorev.model.plan import Certificate
 from zerorev.program.as_exported import as_exported
+from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
 from zerorev.verify.certificate.certify import certify_hole
 from zerorev.verify.certificate.program import certify_program_hole
@@ -64,6 +65,6 @@ def _plan(plan: zr.Plan, hole: zr.HolePlan, _: int) -> Certificate:
 
 def _program(plan: zr.Plan, hole: zr.HolePlan, text: str, _: int) -> Certificate:
     program = read_krl(text)
-    own = as_exported(plan, program)[plan.holes.index(hole)]
+    own = as_exported(plan, program, KRL)[plan.holes.index(hole)]
     assert own.hole is not None
     return certify_program_hole(plan, hole, program, own.hole, own.wrong)

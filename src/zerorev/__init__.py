@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from zerorev import figures as figures
     from zerorev.errors import InputError, NotExportableError, OutputError, ZerorevError
     from zerorev.files.io import read_job, read_plan, read_robot, read_tool, robot_names, tool_names, write_plan
+    from zerorev.model.finding import Finding
     from zerorev.model.hole import Hole
     from zerorev.model.job import Job, Settings
-    from zerorev.model.plan import Finding, HolePlan, Plan, Score
+    from zerorev.model.plan import HolePlan, Plan, Score
     from zerorev.model.profile import Profile
     from zerorev.model.robot import ArmGeometry, JointLimits, Robot
     from zerorev.model.tool import Tool
@@ -72,7 +73,8 @@ _HOMES = {
     ),
     "model.hole": ("Hole",),
     "model.job": ("Job", "Settings"),
-    "model.plan": ("Finding", "HolePlan", "Plan", "Score"),
+    "model.finding": ("Finding",),
+    "model.plan": ("HolePlan", "Plan", "Score"),
     "model.profile": ("Profile",),
     "model.robot": ("ArmGeometry", "JointLimits", "Robot"),
     "model.tool": ("Tool",),

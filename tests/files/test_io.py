@@ -20,9 +20,10 @@ from zerorev.errors import InputError, OutputError
 from zerorev.files import io as files
 from zerorev.files import output
 from zerorev.model._arrays import rotation_rpy, transform
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Baseline, Event, Finding, HolePlan, Motion, Plan, Score, Verification
+from zerorev.model.plan import Baseline, Event, HolePlan, Motion, Plan, Score, Verification
 from zerorev.model.profile import Profile
 
 JOB = """\
@@ -332,7 +333,7 @@ def plans(draw: st.DrawFn) -> Plan:
     frame = transform(rotation_rpy(*draw(numbers(3, -1.5, 1.5))), draw(numbers(3, -3, 3)))
     how = Settings(psi_bound=np.pi, near_joints=(0.1,) * 6, blend_shortfall=1e-4, spindle_rpm=3000.0, legs="free")
     robot = files.read_robot(draw(st.sampled_from(files.robot_names())))
-    said = (Finding("info", "x", "y"),)
+    said = (Finding("info", "deepest", "y"),)
     return Plan(robot, files.read_tool("thesis_drill"), how, tuple(holes), frame, "ü", said, strokes)
 
 

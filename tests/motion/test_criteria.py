@@ -12,9 +12,10 @@ from oracles import arm as twin
 from zerorev.errors import InputError
 from zerorev.files.io import read_job, read_plan, write_plan
 from zerorev.files.plan_data import plan_data
+from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.measures import CRITERIA, Measures
-from zerorev.model.plan import Finding, Plan
+from zerorev.model.plan import Plan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool

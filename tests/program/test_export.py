@@ -1,12 +1,17 @@
 """Plans that are refused, plans of which a part is exported, and the names and comments of what is written."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from zerorev.cli import main
 from zerorev.errors import InputError, NotExportableError
-from zerorev.files.io import read_robot
-from zerorev.model.plan import Finding
-from zerorev.program.export import CONTROLLERS, export
+from zerorev.files.io import read_robot, write_plan
+from zerorev.model.finding import Finding
+from zerorev.program.dialect import ProgramFile
+from zerorev.program.dialects import DIALECTS, read_program
+from zerorev.program.export import export
 from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import build_program
 
@@ -101,7 +106,7 @@ def test_warnings_do_not_stop_the_export(published, plan_of, spoil):
 def test_unknown_controller(published, plan_of):
     with pytest.raises(InputError, match=r"unknown controller 'rapid' \(accepted: krl\)"):
         export(plan_of(published(1)), "rapid")
-    assert list(CONTROLLERS) == ["krl"]
+    assert list(DIALECTS) == ["krl"]
 
 
 @pytest.mark.parametrize("name", ["abb_irb4600_60_205", "yaskawa_gp8"])
@@ -137,7 +142,7 @@ NAMES = {
 def test_program_names(name, called, published, plan_of, krl):
     exported = export(plan_of(published(1), name=name))
     assert exported.name == called
-    assert exported.suffix == ".src"
+    assert [file.name for file in exported.files] == [f"{exported.name}.src"]
     assert krl.read(exported.text).name == called
 
 
@@ -205,3 +210,23 @@ def test_on_two_processes_the_program_is_the_same_and_progress_is_reported_hole_
     alone = export(plan, skip_failed=True, progress=lambda *so_far: reported.append(so_far))
     assert reported == [(0, 3), (1, 3), (2, 3), (3, 3)]
     assert export(plan, skip_failed=True, workers=2) == alone
+
+
+def test_a_program_of_several_files(published, plan_of, monkeypatch, tmp_path):
+    """In a language that wants a file for the data beside the one that is started."""
+
+    def write(program, name, findings, version):
+        return ProgramFile(f"{name}.main", "begin\n"), ProgramFile(f"{name}.data", "points\n")
+
+    monkeypatch.setitem(DIALECTS, "two", replace(DIALECTS["krl"], name="two", suffix=".main", write=write))
+    plan = tmp_path / "plan.json"
+    write_plan(plan_of(published(1)), plan)
+    assert main(["export", str(plan), "--controller", "two", "-o", str(tmp_path / "out.main")]) == 0
+    written = {path.name: path.read_text() for path in tmp_path.iterdir() if path != plan}
+    assert written == {"out.main": "begin\n", "out.data": "points\n"}
+
+
+@pytest.mark.parametrize("name", ["program.txt", "program"])
+def test_a_file_that_ends_like_no_program(name, tmp_path):
+    with pytest.raises(InputError, match=r"ending of no program.*\.src \(krl, KUKA\)"):
+        read_program(tmp_path / name)

@@ -14,7 +14,8 @@ import pytest
 from PIL import Image
 
 from zerorev.model import shown
-from zerorev.model.plan import Finding, HolePlan
+from zerorev.model.finding import Finding
+from zerorev.model.plan import HolePlan
 from zerorev.report.figures.spin import spin_profile
 from zerorev.report.notebook import ROWS
 

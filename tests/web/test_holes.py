@@ -14,9 +14,10 @@ from nicegui import Client
 from nicegui.page import page as page_of
 
 from oracles.published import POSITIONS
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import Finding, HolePlan
+from zerorev.model.plan import HolePlan
 from zerorev.report.words.hole_rows import matching
 from zerorev.web.session import Session
 from zerorev.web.state import answered, opened_job, selected, with_hole, without_hole

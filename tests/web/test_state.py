@@ -8,8 +8,8 @@ import pytest
 
 from zerorev.errors import InputError
 from zerorev.files.io import plan_to_json
+from zerorev.model.finding import Finding
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import Finding
 from zerorev.planning.hole import plan, plan_deepest
 from zerorev.planning.job import plan_job
 from zerorev.web.session import undone

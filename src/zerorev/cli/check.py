@@ -43,8 +43,8 @@ def check(
         plan: The plan file (JSON).
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
-        program: With --certify: prove this program (.src), exported from the plan, instead: the rounded numbers that
-            stand in it, lead-in and all. The plan file is left as it is.
+        program: With --certify: prove this program (KRL: .src), exported from the plan, instead: the rounded numbers
+            that stand in it, lead-in and all. The plan file is left as it is.
         tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
             be certified, and write it into the plan file.
         tolerance_mm: With --certify: certify each hole for every part frame whose origin is at most so far [mm] off the
@@ -74,9 +74,9 @@ def check(
     text = plan_text(plan)
     stated = plan_from_text(text, str(plan))
     if program is not None:
-        from zerorev.program.krl.read import read_program
+        from zerorev.program.dialects import dialect_of, read_program
 
-        written = read_program(program)
+        dialect, written = dialect_of(program), read_program(program)
 
     from zerorev.planning.restated import check_plan, without_proofs
 
@@ -89,7 +89,7 @@ def check(
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
-            drilled = as_exported(checked.plan, written, program.stem)
+            drilled = as_exported(checked.plan, written, dialect, program.stem)
             checked = replace(checked, plan=certify_program(checked.plan, written, drilled))
     elif certify:
         with terminal.busy("proving"):

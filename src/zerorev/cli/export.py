@@ -40,10 +40,13 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
     name = output.stem if output else None
     with terminal.progress("checking", len(answer.holes)) as progress:
         program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=None, progress=progress)
-    target = output or plan.with_name(program.name + program.suffix)
+    main, *others = program.files
+    target = output or plan.with_name(main.name)
     terminal.print_lines(tables.finding_lines(program.findings))
-    write_text(target, program.text)
+    for file in others:  # the one that is started comes last, when all that it calls is there
+        write_text(target.with_name(file.name), file.text)
+    write_text(target, main.text)
     terminal.say(f"program {program.name} written to {target}")
-    if target.name != program.name + program.suffix:
-        terminal.note(f"the controller wants this file called {program.name}{program.suffix}")
+    if target.name != main.name:
+        terminal.note(f"the controller wants this file called {main.name}")
     return FINE

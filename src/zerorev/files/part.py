@@ -28,7 +28,7 @@ from zerorev.files.text import Document, json_pieces
 from zerorev.files.units import plain
 from zerorev.files.validation import checked
 from zerorev.model.hole import Hole
-from zerorev.model.plan import UNFINISHED, HolePlan, Plan
+from zerorev.model.plan import HolePlan, Plan
 
 __all__ = ["Part", "part_document"]
 
@@ -180,7 +180,7 @@ def part_document(text: str, file: str) -> Document | None:
             message = (
                 f"only {len(entries) - 1} of {count} holes are finished; the command that began it continues with it"
             )
-            unfinished = {"level": "error", "kind": UNFINISHED, "message": message, "hole": None}
+            unfinished = {"level": "error", "kind": "unfinished", "message": message, "hole": None}
             return Document(file, head | {"holes": entries[1:], "findings": [*findings, unfinished]})
     raise InputError("holds no finished hole", where=file, accepted="one finished hole or more")
 

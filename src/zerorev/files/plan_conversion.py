@@ -23,13 +23,13 @@ from zerorev.files.stated_forms import Form, agree, noun_from
 from zerorev.files.units import m, rad, rad_per_m
 from zerorev.files.validation import inside
 from zerorev.model._arrays import UNIT_TOLERANCE, Array
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
     Event,
-    Finding,
     HolePlan,
     Motion,
     Optimality,

@@ -9,7 +9,7 @@ from itertools import zip_longest
 from typing import Any
 
 from zerorev.files.plan_fields import HOLE_FIELDS, Field, field_of
-from zerorev.model.plan import Finding
+from zerorev.model.finding import Finding
 
 __all__ = ["differ", "fields_differ", "findings_differ", "leaves"]
 

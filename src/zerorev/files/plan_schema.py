@@ -23,18 +23,9 @@ from zerorev.files.schema import (
     ToolForm,
 )
 from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
+from zerorev.model.finding import Finding
 from zerorev.model.measures import Measures
-from zerorev.model.plan import (
-    Baseline,
-    Certificate,
-    Event,
-    Finding,
-    HolePlan,
-    Optimality,
-    Score,
-    Verification,
-    Within,
-)
+from zerorev.model.plan import Baseline, Certificate, Event, HolePlan, Optimality, Score, Verification, Within
 
 __all__ = [
     "BaselineForm",

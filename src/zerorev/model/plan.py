@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.measures import Measures
@@ -17,18 +18,15 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.shown import Shown
 from zerorev.model.stated import Choice, Switch, Whole, with_attributes
-from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
+from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Texts
 from zerorev.model.tool import Tool
 from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT
 
 __all__ = [
-    "UNFINISHED",
     "Baseline",
     "Certificate",
     "Event",
-    "Finding",
     "HolePlan",
-    "Level",
     "Motion",
     "Optimality",
     "Plan",
@@ -39,11 +37,9 @@ __all__ = [
     "named_holes",
 ]
 
-Level = Literal["error", "warning", "info"]
 LegName = Literal["plunge", "target", "retract"]
 Strokes = Literal["asked", "deepest"]
 
-UNFINISHED = "unfinished"  # kind of the finding that holes of the job are missing from the plan
 HOLES_NAMED = 6  # in one sentence; more are counted
 
 
@@ -52,25 +48,6 @@ def named_holes(ids: Iterable[str]) -> str:
     ids = list(dict.fromkeys(ids))
     more = f" and {len(ids) - HOLES_NAMED:,} more" if len(ids) > HOLES_NAMED else ""
     return f"hole{'s' if len(ids) > 1 else ''} {', '.join(ids[:HOLES_NAMED])}{more}"
-
-
-@dataclass(frozen=True)
-class Finding:
-    """Something a user should know about a plan or one of its holes.
-
-    Of an error no program can be made; a warning asks to look at it first.
-    """
-
-    level: Annotated[
-        Level,
-        Choice(
-            "",
-            words={"error": "", "warning": "", "info": ""},
-        ),
-    ]
-    kind: Annotated[str, Text("a fixed word for machines")]  # e.g. `unreachable`, `limit`, `reversal`, `threshold`
-    message: Annotated[str, Text("one sentence for people")]
-    hole: Annotated[str | None, Text("the hole's id", none="the whole plan is meant")] = None
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ import numpy as np
 from zerorev.kernels.layout import TwistPlane
 from zerorev.kernels.motion import follow, turning_points
 from zerorev.model._arrays import Array
+from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Event, Finding, LegName, Motion, Score
+from zerorev.model.plan import Event, LegName, Motion, Score
 from zerorev.model.profile import Profile
 from zerorev.model.resized import resized_profile
 from zerorev.model.robot import Robot
@@ -120,7 +121,7 @@ def meets_threshold(score: Score, settings: Settings) -> bool:
 
 
 def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Finding, ...]:
-    found = []
+    found: list[tuple[FindingKind, str]] = []
     if path.fault is not None:
         found.append(("unreachable", f"branch {branch} cannot reach {path.fault * 1e3:.2f} mm of stand-off"))
     if path.jump is not None:

@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Baseline, Finding, HolePlan, Optimality
+from zerorev.model.plan import Baseline, HolePlan, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool

@@ -17,9 +17,10 @@ import numpy as np
 from zerorev.files.plan_data import answer_data
 from zerorev.files.plan_differences import differ, fields_differ, findings_differ, leaves
 from zerorev.files.units import deg_per_mm, mm
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
+from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
@@ -79,7 +80,7 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
         workers: processes to run it on; None: one per core where it is worth it. The outcome is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
     """
-    said = _but(stated.findings, UNFINISHED), lever_findings(stated.robot, stated.tool)
+    said = _but(stated.findings, "unfinished"), lever_findings(stated.robot, stated.tool)
     wrong = [_error(message, None) for message in findings_differ(*said)]
     holes: list[HolePlan] = []
     if progress:

@@ -6,41 +6,17 @@ from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
 from functools import partial
 
-from zerorev.errors import InputError, NotExportableError
-from zerorev.model.plan import Finding, HolePlan, Plan
-from zerorev.program.krl.text import identifier
-from zerorev.program.krl.write import refuse_other_makers, to_krl
-from zerorev.program.neutral import Program, build_program
+from zerorev.errors import NotExportableError
+from zerorev.model.finding import Finding
+from zerorev.model.plan import HolePlan, Plan
+from zerorev.program.dialect import ProgramFile
+from zerorev.program.dialects import dialect_called
+from zerorev.program.neutral import build_program
 from zerorev.program.preflight import preflight
 from zerorev.verify.check import subject, verify_hole
 from zerorev.workers import Machines, Workers
 
-__all__ = ["CONTROLLERS", "Controller", "Exported", "export", "exporting"]
-
-
-@dataclass(frozen=True)
-class Controller:
-    """A dialect.
-
-    Attributes:
-        suffix: of its files.
-        program_name: makes a name that the controller accepts of any text.
-        check_robot: (manufacturer, robot) -> raises `NotExportableError` where the controller cannot drive it.
-        write: (program, name, findings, version) -> text.
-    """
-
-    suffix: str
-    program_name: Callable[[str], str]
-    check_robot: Callable[[str, str], None]
-    write: Callable[[Program, str, tuple[Finding, ...], str | None], str]
-
-
-def _write_krl(program: Program, name: str, findings: tuple[Finding, ...], version: str | None) -> str:
-    return to_krl(program, name=name, findings=findings, version=version)
-
-
-CONTROLLERS: dict[str, Controller] = {"krl": Controller(".src", identifier, refuse_other_makers, _write_krl)}
-"""Every dialect that can be written, by the name that the command line takes."""
+__all__ = ["Exported", "export", "exporting"]
 
 
 @dataclass(frozen=True)
@@ -48,18 +24,21 @@ class Exported:
     """A program, ready to be written to a file.
 
     Attributes:
-        text: of the file, lines ended by a newline.
+        files: the one that is started first.
         findings: warnings and infos of the preflight.
-        name: of the program in the text; its file must be called `name` + `suffix`.
-        suffix: with its dot.
-        holes: how many are in the program.
+        name: of the program.
+        holes: how many are in it.
     """
 
-    text: str
+    files: tuple[ProgramFile, ...]
     findings: tuple[Finding, ...]
     name: str
-    suffix: str
     holes: int
+
+    @property
+    def text(self) -> str:
+        """Of the file that is started."""
+        return self.files[0].text
 
 
 def export(
@@ -79,7 +58,7 @@ def export(
 
     Args:
         plan: what to run.
-        controller: one of `CONTROLLERS`.
+        controller: one of `DIALECTS`.
         skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
         name: of the program; by default the plan's.
         version: of zerorev, for the comment block; by default the installed one.
@@ -114,9 +93,7 @@ def exporting(
     workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
-    if controller not in CONTROLLERS:
-        raise InputError(f"unknown controller '{controller}'", where="controller", accepted=", ".join(CONTROLLERS))
-    dialect = CONTROLLERS[controller]
+    dialect = dialect_called(controller)
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
     verified = yield from _verified(plan, workers)
     program = build_program(verified, skip_failed=skip_failed)
@@ -124,8 +101,7 @@ def exporting(
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))
     called = dialect.program_name(name or plan.name)
-    text = dialect.write(program, called, findings, version)
-    return Exported(text, findings, called, dialect.suffix, len(program.holes))
+    return Exported(dialect.write(program, called, findings, version), findings, called, len(program.holes))
 
 
 def _verified(plan: Plan, workers: int | None) -> Generator[None, None, Plan]:

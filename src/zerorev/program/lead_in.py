@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding, Motion
+from zerorev.model.finding import Finding
+from zerorev.model.plan import Motion
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import FULL_TURN, joints_along, outward_rates
 

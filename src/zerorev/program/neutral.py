@@ -16,8 +16,9 @@ import numpy as np
 
 from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array, transform
+from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, named_holes
+from zerorev.model.plan import HolePlan, Plan, named_holes
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.lead_in import find_lead_in
@@ -171,7 +172,7 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
 
 def _left_out(plan: Plan, refused: Mapping[str | None, str]) -> list[Finding]:
     """Which holes of the job are missing from the program: those that the plan lacks, then those that it refuses."""
-    found = [finding for finding in plan.findings if finding.kind == UNFINISHED]
+    found = [finding for finding in plan.findings if finding.kind == "unfinished"]
     if refused:
         kept, ids = len(plan.holes) - len(refused), [str(hole_id) for hole_id in refused]
         message = f"only {kept:,} of {len(plan.holes):,} holes are in the program; left out: {named_holes(ids)}"

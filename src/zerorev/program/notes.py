@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding, Level
+from zerorev.model.finding import Finding, FindingKind, Level
 from zerorev.program.neutral import HoleProgram, LinearMove, Program
 
 __all__ = ["CornerDepth", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
@@ -63,7 +63,7 @@ def notes(program: Program) -> tuple[Finding, ...]:
     return (*program.findings, *_blend(program), *_clearance(program), *_spindle(program), *_unchecked(program))
 
 
-def _said_once(program: Program, level: Level, kind: str, messages: list[str]) -> tuple[Finding, ...]:
+def _said_once(program: Program, level: Level, kind: FindingKind, messages: list[str]) -> tuple[Finding, ...]:
     """One finding a hole, or one for the whole program where all holes have the same; empty messages are left out."""
     if len(set(messages)) == 1 and messages[0] and len(messages) > 1:
         return (Finding(level, kind, f"{messages[0]} (at every hole)"),)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.model.finding import Finding
+from zerorev.model.plan import HolePlan, Plan
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import outward_rates
 from zerorev.motion.kinematics import forward, tcp_pose

@@ -13,7 +13,8 @@ from importlib.util import find_spec
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.model.finding import Finding
+from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words.hole_rows import hole_row
 from zerorev.report.words.tables import finding_lines, hole_check, hole_findings
 from zerorev.visible import one_line

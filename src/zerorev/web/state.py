@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 from zerorev.errors import InputError
 from zerorev.maps.replan import job_of
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import UNFINISHED, Finding, HolePlan, Plan, Strokes, named_holes
+from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
 
@@ -131,7 +132,7 @@ def opened_plan(plan: Plan) -> State:
     job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
     said = [replace(each, message=f"{each.message} (of the plan that was opened)") for each in plan.findings]
-    lacking = next((each for each in said if each.kind == UNFINISHED), None)
+    lacking = next((each for each in said if each.kind == "unfinished"), None)
     return State(job, answers, holes[0].id, strokes=plan.strokes, lacking=lacking)
 
 
@@ -278,7 +279,7 @@ def plan_of(state: State) -> Plan:
     findings = plan.findings if state.lacking is None else (*plan.findings, state.lacking)
     if missing := state.unplanned:
         message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
-        findings = (*findings, Finding("warning", UNFINISHED, message))
+        findings = (*findings, Finding("warning", "unfinished", message))
     return replace(plan, findings=findings)
 
 

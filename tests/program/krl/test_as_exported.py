@@ -10,13 +10,14 @@ from zerorev.files.text import json_text
 from zerorev.model.profile import Profile
 from zerorev.program.as_exported import as_exported
 from zerorev.program.export import export
+from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
 
 
 def wrong(plan, text):
     """What the program of a plan in memory has that the plan does not, once it was in a file."""
     in_file = plan_from_text(json_text(plan_to_json(plan)), "plan.json")
-    return [own.wrong for own in as_exported(in_file, read_krl(text))]
+    return [own.wrong for own in as_exported(in_file, read_krl(text), KRL)]
 
 
 @pytest.mark.parametrize("depth_mm", [25.3, 30.0, 49.7, 12.35])

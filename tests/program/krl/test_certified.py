@@ -16,6 +16,7 @@ from zerorev.motion import kinematics
 from zerorev.motion.critical import kappa_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.program.as_exported import as_exported
+from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
 from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import build_program
@@ -34,7 +35,7 @@ def written(plan):
 
 def certify(plan, text=None):
     program = read_krl(text or written(plan))
-    return [hole.certificate for hole in certify_program(plan, program, as_exported(plan, program)).holes]
+    return [hole.certificate for hole in certify_program(plan, program, as_exported(plan, program, KRL)).holes]
 
 
 def certify_motion_alone(plan, text):

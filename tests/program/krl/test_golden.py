@@ -16,7 +16,7 @@ POSITIONS = {1: "position_1", 2: "position_2", 3: "position_3"}
 
 def check(name, exported):
     assert exported.name == name
-    path = GOLDEN / f"{name}{exported.suffix}"
+    path = GOLDEN / exported.files[0].name
     if os.environ.get("ZEROREV_WRITE_GOLDEN"):
         path.write_bytes(exported.text.encode("ascii"))
     assert path.read_bytes() == exported.text.encode("ascii")

@@ -14,6 +14,7 @@ from zerorev import cli
 from zerorev.cli import main
 from zerorev.program.as_exported import expected
 from zerorev.program.export import export
+from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
 from zerorev.verify.certificate.program import certify_program
 
@@ -27,7 +28,7 @@ def plan(published, plan_of):
 
 def hold(plan, count, seed):
     """Every mutation of a plan's program to what it claims; how many there were of each name."""
-    text, wanted = export(plan, version="test").text, expected(plan)
+    text, wanted = export(plan, version="test").text, expected(plan, KRL)
     original, reached, found = read_krl(text), commands(text), Counter()
     assert certified(plan, wanted, original)
     for kind, mutated, harmless in mutations(text, count, seed):
@@ -185,7 +186,7 @@ def test_what_a_controller_and_an_operator_may_change(exported, tmp_path):
 )
 def test_the_program_is_called_as_its_plan_or_its_file(called, file_name, fits, plan):
     program = read_krl(export(plan).text.replace("DEF mutated", f"DEF {called}"))
-    wrong = [own.wrong for own in expected(plan).beside(program, file_name)]
+    wrong = [own.wrong for own in expected(plan, KRL).beside(program, file_name)]
     assert (
         wrong == 2 * [()] if fits else all(f"line 4: the program is called {called}" in reasons[0] for reasons in wrong)
     )

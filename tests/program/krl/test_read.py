@@ -14,8 +14,9 @@ from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
 from zerorev.motion.kinematics import forward, tcp_pose
+from zerorev.program.dialects import read_program
 from zerorev.program.export import export
-from zerorev.program.krl.read import read_krl, read_program
+from zerorev.program.krl.read import read_krl
 
 DIRECTIONS = {
     "up": (0, 0, 1),

@@ -57,7 +57,7 @@ def test_what_users_write_stays_text(published, where):
     elif where == "robot":
         plan = replace(plan, robot=replace(plan.robot, model=NASTY, manufacturer=""))
     else:
-        from zerorev.model.plan import Finding
+        from zerorev.model.finding import Finding
 
         answer = plan.holes[0]
         plan = replace(plan, holes=(replace(answer, findings=(Finding("info", "note", NASTY, "P"),)),))

@@ -11,7 +11,7 @@ from zerorev.errors import InputError
 from zerorev.files.conversion import hole_from
 from zerorev.files.schema import HoleForm
 from zerorev.model._arrays import rotation_rpy, transform
-from zerorev.model.plan import Finding
+from zerorev.model.finding import Finding
 from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching, part_data, standing
 
 ROWS = (

@@ -8,7 +8,8 @@ import pytest
 from rich.console import Console
 
 from zerorev.files.io import read_robot
-from zerorev.model.plan import Finding, Verification
+from zerorev.model.finding import Finding
+from zerorev.model.plan import Verification
 from zerorev.report.words import tables
 
 

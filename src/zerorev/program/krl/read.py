@@ -11,33 +11,15 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from decimal import Decimal
-from pathlib import Path
 from typing import NoReturn
 
 from zerorev.errors import InputError
-from zerorev.files.text import read_bytes
 from zerorev.model.written import Six, Statement, Word, WrittenHole, WrittenMove, WrittenProgram
 from zerorev.program.krl.source import shape, statements, words
 
-__all__ = ["read_krl", "read_program"]
+__all__ = ["read_krl"]
 
-MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
-BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 NAME = re.compile(r"[A-Z][A-Z0-9_]{0,23}", re.IGNORECASE)
-
-
-def read_program(path: str | Path) -> WrittenProgram:
-    """Read a program that `zerorev export` has written.
-
-    Args:
-        path: of the .src file.
-
-    Raises:
-        InputError: a file that cannot be read, or a statement that `export` does not write.
-    """
-    content = read_bytes(Path(path), "a program that zerorev has exported (KRL, .src)", MOST_BYTES)
-    # byte by byte, so that a message can name the line of one that is not ASCII
-    return read_krl(content.removeprefix(BYTE_ORDER_MARK).decode("latin-1"), str(path))
 
 
 def read_krl(text: str, file: str = "program") -> WrittenProgram:

@@ -8,14 +8,14 @@ return and a line feed, and with nothing else; the only other control character 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 from functools import partial
 from typing import NoReturn
 
 from zerorev.model.written import Statement, Word
 
-__all__ = ["Refuse", "shape", "statements", "words"]
+__all__ = ["Refuse", "alike", "shape", "statements", "words"]
 
 Refuse = Callable[[int, str], NoReturn]
 """Called with the number of a line and what is wrong there."""
@@ -23,6 +23,7 @@ Refuse = Callable[[int, str], NoReturn]
 LONGEST_STATEMENT = 255  # characters: twice what `export` writes
 
 _ODD = re.compile(r"[^\t -~]")
+_ANGLES = ("A", "B", "C")
 _HEADER = re.compile(r"&[ \t]*(?:ACCESS|REL|COMMENT|PARAM|USER)\b", re.IGNORECASE)
 _SIGNS = "{}(),:="
 _WORD = re.compile(rf"[{_SIGNS}]|[^ \t{_SIGNS}]+")
@@ -81,3 +82,35 @@ def _named(character: str) -> str:
         return "a carriage return without a line feed: it is not certain that it ends a line"
     kind = "that is not ASCII" if ord(character) > 0x7F else "of control"
     return f"a character {kind} (code {ord(character):#04x}): it is not certain how a controller reads it"
+
+
+def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
+    """Whether a statement is the one expected: points and frames but for one in their last printed digits.
+
+    Args:
+        found: words of a program's statement.
+        wanted: as `export` writes it.
+    """
+    if len(found) != len(wanted):
+        return False
+    rounded = "{" in wanted
+    names = ("", *wanted)
+    return all(
+        own == other
+        or (
+            rounded
+            and isinstance(own, Decimal)
+            and isinstance(other, Decimal)
+            and _rounds_alike(own, other, turns=name in _ANGLES)
+        )
+        for own, other, name in zip(found, wanted, names, strict=False)
+    )
+
+
+def _rounds_alike(found: Decimal, wanted: Decimal, *, turns: bool) -> bool:
+    """Whether a number is the one expected but for one in its last printed digit.
+
+    Angles are written within (-180, 180], so that the one next to 180 is close to -180.
+    """
+    unit, off = Decimal(1).scaleb(int(wanted.as_tuple().exponent)), abs(found - wanted)
+    return off <= unit or (turns and abs(off - 360) <= unit and min(found, wanted) > -180 and max(found, wanted) <= 180)

@@ -12,7 +12,7 @@ import numpy as np
 
 from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Finding
+from zerorev.model.finding import Finding
 from zerorev.program.krl.text import (
     aggregate,
     axis_angles,

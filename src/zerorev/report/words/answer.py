@@ -11,8 +11,9 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
+from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Plan
+from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words import tables, terminal
 
 __all__ = ["ROWS", "Shown", "how_deep"]

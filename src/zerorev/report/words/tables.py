@@ -11,8 +11,9 @@ from rich.table import Table
 from rich.text import Text
 
 from zerorev.files.conversion import robot_data
+from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Level, Plan, Score, named_holes
+from zerorev.model.plan import HolePlan, Plan, Score, named_holes
 from zerorev.model.robot import Robot
 
 __all__ = [

@@ -15,8 +15,9 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
+from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
-from zerorev.model.plan import Finding, HolePlan, Level, Plan, Within
+from zerorev.model.plan import HolePlan, Plan, Within
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate.arm import Setting, posture_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -14,7 +14,8 @@ from typing import Any
 from nicegui import ui
 
 from zerorev.errors import NotExportableError, ZerorevError
-from zerorev.model.plan import UNFINISHED, Finding, Plan
+from zerorev.model.finding import Finding
+from zerorev.model.plan import Plan
 from zerorev.program.export import Exported, exporting
 from zerorev.web import files
 from zerorev.web.computing import Work
@@ -68,7 +69,7 @@ def _entry(text: str, name: str, wish: Callable[[], None]) -> None:
 def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
     """Make something of all holes; where some have no answer, only once the user has been asked and agrees."""
     plan = plan_of(session.state)
-    missing = [finding for finding in plan.findings if finding.kind == UNFINISHED]
+    missing = [finding for finding in plan.findings if finding.kind == "unfinished"]
     if not missing:
         go()
         return
@@ -109,12 +110,7 @@ def _job(session: Session) -> None:
         return
 
     def save(made: dict[str, str]) -> None:
-        if len(made) == 1:
-            ((name, text),) = made.items()
-            ui.download.content(text, name, "application/yaml")
-        else:
-            zipped = _zipped((name, text.encode()) for name, text in made.items())
-            ui.download.content(zipped, f"{_stem(job.name)}.zip")
+        _handed_out(made, "application/yaml", job.name)
 
     do_apart("Writing the job …", files.job_written, files.pieces(job), dict, save)
 
@@ -196,15 +192,15 @@ def _make(
 
 def _offer(program: Exported, of: int) -> None:
     """Show what the preflight found, and which of so many holes are missing, then hand the program out."""
-    name = f"{program.name}{program.suffix}"
+    name = program.files[0].name
     lacking = ""
     if program.holes < of:
         lacking = f"The program drills {_of(program.holes, of)}."
-    elif any(finding.kind == UNFINISHED for finding in program.findings):
+    elif any(finding.kind == "unfinished" for finding in program.findings):
         lacking = "The program does not have all holes of the job."
 
     def save() -> None:
-        ui.download.content(program.text, name, "text/plain")
+        _handed_out({file.name: file.text for file in program.files}, "text/plain", program.name)
         dialog.close()
 
     dialog, inside, _ = form(f"Before {name} runs", "preflight", wide=True)
@@ -269,6 +265,15 @@ def _only(plan: Plan, state: State) -> Plan:
     if not holes:
         raise ZerorevError("this hole is not planned yet")
     return replace(plan, holes=holes)
+
+
+def _handed_out(made: Mapping[str, str], media_type: str, name: str) -> None:
+    """One text as it is, several in an archive."""
+    if len(made) == 1:
+        ((file, text),) = made.items()
+        ui.download.content(text, file, media_type)
+    else:
+        ui.download.content(_zipped((file, text.encode()) for file, text in made.items()), f"{_stem(name)}.zip")
 
 
 def _zipped(named: Iterable[tuple[str, bytes]]) -> bytes:

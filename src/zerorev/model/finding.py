@@ -1,0 +1,58 @@
+"""What a user should know about a plan or one of its holes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal, get_args
+
+from zerorev.model.stated import Choice
+from zerorev.model.stated_figures import Text
+
+__all__ = ["Finding", "FindingKind", "Level"]
+
+Level = Literal["error", "warning", "info"]
+
+FindingKind = Literal[
+    "blend",
+    "blend_clipped",
+    "certificate",
+    "clearance",
+    "corner_not_deepened",
+    "deepest",
+    "depth",
+    "incomplete",
+    "joint_speed",
+    "joints",
+    "jump",
+    "lead_in",
+    "limit",
+    "no_stroke",
+    "printable",
+    "rejected",
+    "reversal",
+    "skipped",
+    "spindle_speed",
+    "threshold",
+    "tolerance",
+    "tool_turn",
+    "turn_speed",
+    "unchecked_moves",
+    "unfinished",
+    "unreachable",
+    "verification",
+    "wrist_offset",
+]
+"""Every kind there is: a fixed word for machines. What each means is said in docs/howto/findings.md."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something a user should know about a plan or one of its holes.
+
+    Of an error no program can be made; a warning asks to look at it first.
+    """
+
+    level: Annotated[Level, Choice(words=dict.fromkeys(get_args(Level), ""))]
+    kind: Annotated[FindingKind, Choice("a fixed word for machines", words=dict.fromkeys(get_args(FindingKind), ""))]
+    message: Annotated[str, Text("one sentence for people")]
+    hole: Annotated[str | None, Text("the hole's id", none="the whole plan is meant")] = None

@@ -1,0 +1,51 @@
+"""What a controller's language must offer, and the files that a program consists of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from zerorev.model.finding import Finding
+from zerorev.model.written import Word, WrittenProgram
+from zerorev.program.neutral import Program
+
+__all__ = ["Dialect", "ProgramFile"]
+
+
+@dataclass(frozen=True)
+class ProgramFile:
+    """A file of a program.
+
+    Attributes:
+        name: with its ending, as the controller wants it.
+        text: lines ended by a newline.
+    """
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """The language of one maker's controllers.
+
+    Attributes:
+        name: of its folder, and what `--controller` takes.
+        controllers: whose they are, for people.
+        suffix: of the file that is given to the reader, with its dot.
+        alike: (words found, words expected) -> whether two statements are the same but for the last printed digits.
+        program_name: makes a name that the controller accepts of any text.
+        check_robot: (manufacturer, robot) -> raises `NotExportableError` where the controller cannot drive it.
+        write: (program, name, findings, version of zerorev) -> its files, the one that is started first.
+        read: what `write` has written, the file that is started first; raises `InputError` at a statement of another
+            form than `write` writes, for it might move the robot in a way that nobody has examined.
+    """
+
+    name: str
+    controllers: str
+    suffix: str
+    alike: Callable[[Sequence[Word], Sequence[Word]], bool]
+    program_name: Callable[[str], str]
+    check_robot: Callable[[str, str], None]
+    write: Callable[[Program, str, tuple[Finding, ...], str | None], tuple[ProgramFile, ...]]
+    read: Callable[[Sequence[ProgramFile]], WrittenProgram]

@@ -1,0 +1,61 @@
+"""Every language in which a program can be written and read, and which one a file is in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from zerorev.errors import InputError
+from zerorev.files.text import read_bytes
+from zerorev.model.written import WrittenProgram
+from zerorev.program.dialect import Dialect, ProgramFile
+from zerorev.program.krl.dialect import KRL
+
+__all__ = ["DIALECTS", "dialect_called", "dialect_of", "read_program"]
+
+MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL,)}
+
+
+def dialect_called(name: str) -> Dialect:
+    """A dialect by its name.
+
+    Raises:
+        InputError: there is none of it.
+    """
+    if name not in DIALECTS:
+        raise InputError(f"unknown controller '{name}'", where="controller", accepted=", ".join(DIALECTS))
+    return DIALECTS[name]
+
+
+def dialect_of(path: Path) -> Dialect:
+    """The dialect that a program's file is in, by the ending of its name.
+
+    Raises:
+        InputError: it ends like no program.
+    """
+    for dialect in DIALECTS.values():
+        if path.suffix.lower() == dialect.suffix:
+            return dialect
+    known = " or ".join(f"{each.suffix} ({each.name}, {each.controllers})" for each in DIALECTS.values())
+    raise InputError(
+        f"'{path.suffix}' is the ending of no program", where=str(path), accepted=f"a program that ends in {known}"
+    )
+
+
+def read_program(path: Path) -> WrittenProgram:
+    """Read a program that `zerorev export` has written.
+
+    Args:
+        path: of the file that is started.
+
+    Raises:
+        InputError: a file that cannot be read, or a statement that `export` does not write.
+    """
+    dialect = dialect_of(path)
+    what = f"a program that zerorev has exported ({dialect.name}, {dialect.suffix})"
+    content = read_bytes(path, what, MOST_BYTES)
+    # byte by byte, so that a message can name the line of one that is not ASCII
+    text = content.removeprefix(BYTE_ORDER_MARK).decode("latin-1")
+    return dialect.read((ProgramFile(str(path), text),))
