@@ -58,8 +58,7 @@ def what_is_worse(tight, loose):
     if after.motion is None:
         return [*worse, "no motion"]
     old, new = order.rank(still), order.rank(after.motion)
-    # below the threshold the cost decides between margins that are alike to the last digit alone
-    old, new = (one._replace(lack=round(one.lack, 6), cost=0.0 if one.lack else one.cost) for one in (old, new))
+    old, new = (one._replace(lack=round(one.lack, 6)) for one in (old, new))
     if (new.reversals, new.lack, new.cost * (1 - SAME)) > old[:3]:
         worse.append(f"{old[:3]}, then {new[:3]}")
     return worse

@@ -55,7 +55,9 @@ def compared(settings, one, other):
 
     def lack(motion):
         slow = slowest(motion)
-        return 0.0 if slow is None or slow >= settings.min_rate * (1 - 1e-6) else settings.min_rate - slow
+        if slow is None or slow >= settings.min_rate * (1 - 1e-6):
+            return 0.0
+        return settings.min_rate * max(1e-5, round((settings.min_rate - slow) / settings.min_rate, 5))
 
     def turned_while_cutting(motion):
         start, target, _ = motion.profile.psi
@@ -100,6 +102,14 @@ def test_less_lack_comes_before_less_travel(robot, tool):
     faster = candidate(settings, [0] * 6, [0.7 * THRESHOLD] * 6, 5.0, (0.1, 0.0, -0.1))
     fewer = candidate(settings, [0, 0, 0, 0, 0, 1], [2 * THRESHOLD] * 6, 0.5, (0.1, 0.0, -0.1))
     assert order.best([slow, fewer, faster]) is faster
+
+
+def test_less_travel_comes_first_where_the_margin_is_the_same_to_four_digits(robot, tool):
+    settings = Settings(min_rate=THRESHOLD)
+    order = Order(Drilling(robot, tool, Hole("h", X, X, 0.02)), settings)
+    slow = candidate(settings, [0] * 6, [0.4 * THRESHOLD * (1 - 1e-6)] * 6, 1.0, (0.1, 0.0, -0.1))
+    faster = candidate(settings, [0] * 6, [0.4 * THRESHOLD] * 6, 5.0, (0.1, 0.0, -0.1))
+    assert order.best([faster, slow]) is slow
 
 
 def test_weights_of_criteria_decide_where_there_are_any(robot, tool, positions):

@@ -50,9 +50,9 @@ def check_size(drilled, factor, rel):
 
 class TestStraightLegs:
     @pytest.mark.parametrize("factor", [0.02, 30.0])
-    @pytest.mark.parametrize("seed", [6, 36])
+    @pytest.mark.parametrize("seed", [6, 36, 20_098])
     def test_a_plan_is_the_same_at_any_size(self, seed, factor):
-        """At 30 times its size the deepest stroke of hole 36 was once half of what it is."""
+        """Of hole 36 the deepest stroke was once half of what it is, of 20,098 the travel a fifth more."""
         check_size(some_hole(seed), factor, 1e-5)
 
     @pytest.mark.long

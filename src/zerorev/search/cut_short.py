@@ -14,9 +14,10 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Legs, improved, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, constraints
 
-__all__ = ["cut_short", "descended", "legs_swapped", "steadied"]
+__all__ = ["cut_short", "descended", "eased", "legs_swapped", "steadied"]
 
 POINTS = 33  # of a leg at which the joints are examined
+SAME_MARGIN = 1e-6  # relative
 ENOUGH_LACK = 1e-6  # [rad/m]
 GUARDS = tuple((LEAST_RATE * np.array([0.0, 10.0, 1e4, 1e6])).tolist())  # [rad/m] for what lies between them
 
@@ -61,6 +62,22 @@ def descended(order: Order, motion: Candidate) -> Candidate:
         if found is not None and found.reversals == 0 and found.keeps_threshold:
             return min(motion, found, key=order.rank)
     return motion
+
+
+def eased(order: Order, motion: Candidate) -> Candidate:
+    """The best motion of about the same margin near one below the threshold, or that itself where none is better.
+
+    One leg may decide the margin: the other then has a choice that a search for the greatest margin leaves open.
+
+    Args:
+        order: of the hole that is drilled.
+        motion: of straight legs, without a reversal.
+    """
+    least = order.margin(motion) * (1 - SAME_MARGIN)
+    if motion.profile.psi.size > 3 or motion.reversals or least <= LEAST_RATE:
+        return motion
+    found = _moved(order, motion.branch, motion.psi_target, motion.profile.twist_rate, least, goal=None)
+    return motion if found is None or found.reversals else min(motion, found, key=order.rank)
 
 
 def steadied(order: Order, branch: int, psi_t: float, slopes: Array, min_rate: float) -> Candidate | None:

@@ -24,7 +24,7 @@ from zerorev.program.lead_in import find_lead_in
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
-from zerorev.search.cut_short import cut_short, descended, legs_swapped, steadied
+from zerorev.search.cut_short import cut_short, descended, eased, legs_swapped, steadied
 from zerorev.search.deepest import WORTH_RAISING, Deepest, deepened, deepest_of
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
@@ -203,6 +203,8 @@ class _Pool:
             best = descended(order, best)
         if best is None or best.reversals or not best.keeps_threshold:
             best = order.best([best, self.stretched()])
+        if best is not None and not best.keeps_threshold:
+            best = eased(order, best)
         if best is not None and not self.allows(best):
             best = order.best(one for one in self.with_lead_in(best) if self.allows(one))
         return best

@@ -23,6 +23,7 @@ __all__ = ["SAME_COST", "Candidate", "Order", "Rank"]
 
 SAME_COST = 1e-9  # weighted counts of reversals that differ by less are one
 DIGITS = 9  # to which they are rounded, accordingly
+LACK_DIGITS = 5  # of the motion threshold: margins below it that are alike so far are one, and the cost decides
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class Rank(NamedTuple):
 
     Attributes:
         reversals: weighted count.
-        lack: by how much the slowest joint is below the motion threshold [rad/m]; 0 where the threshold is kept.
+        lack: by how much the slowest joint is below the motion threshold [rad/m], rounded; 0 where it is kept.
         cost: what the settings ask to be least.
         plunge_rotation: angle that the tool is spun through while it cuts [rad]: of two twins the one that spins less.
         branch: 0..7.
@@ -115,8 +116,11 @@ class Order:
         return float(np.dot(self.settings.reversal_weights, candidate.score.reversals_per_joint))
 
     def lack(self, candidate: Candidate) -> float:
-        """By how much the slowest joint is below the motion threshold [rad/m]; 0 where the threshold is kept."""
-        return 0.0 if candidate.keeps_threshold else self.settings.min_rate - self._margin(candidate)
+        """By how much the slowest joint is below the motion threshold [rad/m], rounded; 0 where it is kept."""
+        if candidate.keeps_threshold:
+            return 0.0
+        threshold = self.settings.min_rate
+        return threshold * max(round(1.0 - self.margin(candidate) / threshold, LACK_DIGITS), 10.0**-LACK_DIGITS)
 
     def rank(self, candidate: Candidate) -> Rank:
         """What a motion is compared by."""
@@ -133,7 +137,7 @@ class Order:
         """The best of several motions of the hole; None where there is none."""
         return min((one for one in candidates if one is not None), key=self.rank, default=None)
 
-    def _margin(self, candidate: Candidate) -> float:
+    def margin(self, candidate: Candidate) -> float:
         """Rate of the slowest joint that does not reverse [rad/m]; 0 where all reverse."""
         steady = steady_rates(candidate.score, self.settings)
         return float(steady.min()) if steady.size else 0.0
@@ -146,7 +150,7 @@ class Order:
             case "travel":
                 return candidate.score.travel
             case "margin":
-                return -self._margin(candidate)
+                return -self.margin(candidate)
             case "plunge_rotation":
                 return _plunge_rotation(candidate)
 
