@@ -1,0 +1,1 @@
+"""The physics: dynamics, plant, controller, lost motion, ensembles, recordings."""
