@@ -15,9 +15,10 @@ import re
 import reprlib
 import stat
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, BinaryIO, NoReturn
 
 from zerorev.errors import InputError
 from zerorev.visible import as_json, table_cell
@@ -34,6 +35,7 @@ __all__ = [
     "json_document",
     "json_pieces",
     "json_text",
+    "opened",
     "read_bytes",
     "read_text",
     "row_of",
@@ -110,19 +112,42 @@ def read_bytes(path: Path, accepted: str, most: int = MAX_BYTES) -> bytes:
     Raises:
         InputError: no such file, a folder, too large, not readable.
     """
+    with opened(path, accepted) as stream:
+        content = stream.read(most + 1)
+    if len(content) > most:
+        raise InputError(f"is larger than {most // 2**20} MiB", where=str(path), accepted=accepted)
+    return content
+
+
+@contextmanager
+def opened(path: Path, accepted: str) -> Iterator[BinaryIO]:
+    """A file that is read piece by piece.
+
+    Args:
+        path: which.
+        accepted: what kind of file belongs here, for the message.
+
+    Raises:
+        InputError: no such file, a folder, not a regular file, not readable, also while it is read.
+    """
     try:
-        with open(path, "rb", opener=_not_waiting) as stream:
-            content = stream.read(most + 1)
+        stream = open(path, "rb", opener=_not_waiting)  # noqa: SIM115  closed below
     except _NotAFileError as error:
         raise InputError(str(error), where=str(path), accepted=accepted) from None
     except FileNotFoundError:
         raise InputError("no such file", where=str(path), accepted=accepted) from None
     except (OSError, ValueError) as error:  # ValueError: a null byte in the path
-        why = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot be read: {why}", where=repr(str(path)), accepted=accepted) from None
-    if len(content) > most:
-        raise InputError(f"is larger than {most // 2**20} MiB", where=str(path), accepted=accepted)
-    return content
+        raise _unreadable(path, accepted, error) from None
+    with stream:
+        try:
+            yield stream
+        except OSError as error:
+            raise _unreadable(path, accepted, error) from None
+
+
+def _unreadable(path: Path, accepted: str, error: OSError | ValueError) -> InputError:
+    why = error.strerror if isinstance(error, OSError) else str(error)
+    return InputError(f"cannot be read: {why}", where=repr(str(path)), accepted=accepted)
 
 
 class _NotAFileError(Exception):
