@@ -44,11 +44,9 @@ def test_every_cell_is_the_best_branch_of_the_twin(first_point, rate, mean):
         )
         for m, s, e in np.ndindex(score.shape):
             spins = outer[s], target[m], outer[e]
-            judged = [
-                twin.judge(start.robot, TOOL, start.hole, UNEVEN, spins, b, first_point=first_point, least_rate=rate,
-                           mean=mean)
-                for b in range(8)
-            ]  # fmt: skip
+            judged = twin.judge(
+                start.robot, TOOL, start.hole, UNEVEN, spins, first_point=first_point, least_rate=rate, mean=mean
+            )
             costs = np.array([cost for cost, _ in judged])
             assert score[m, s, e] == pytest.approx(costs.min(), abs=1e-9)
             best = np.flatnonzero(costs < costs.min() + 1e-9)
@@ -69,11 +67,12 @@ def test_one_branch_alone_is_that_branch():
     start = next(iter(starts(1, seed=5, deepest=0.2)))
     outer, target = start.psi_t + np.array([-0.5, 0.2, 0.9]), np.array([start.psi_t])
     alone = [mapped(start.robot, start.hole, outer, target, only=b) for b in range(8)]
-    for b, (score, _, branch, _) in enumerate(alone):
+    for b, (_, _, branch, _) in enumerate(alone):
         assert set(np.unique(branch)) <= {-1, b}
-        for s, e in np.ndindex(3, 3):
-            spins = outer[s], target[0], outer[e]
-            cost, _ = twin.judge(start.robot, TOOL, start.hole, UNEVEN, spins, b, first_point=False)
+    for s, e in np.ndindex(3, 3):
+        spins = outer[s], target[0], outer[e]
+        expected = twin.judge(start.robot, TOOL, start.hole, UNEVEN, spins, first_point=False)
+        for (score, *_), (cost, _) in zip(alone, expected, strict=True):
             assert score[0, s, e] == pytest.approx(cost, abs=1e-9)
     together = mapped(start.robot, start.hole, outer, target)[0]
     np.testing.assert_array_equal(together, np.min([score for score, *_ in alone], axis=0))

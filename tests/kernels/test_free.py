@@ -75,7 +75,7 @@ def test_admissible_slopes_are_those_that_keep_every_joint_going(robot, tool):
             if np.isnan(sigma).any():
                 sigma = np.ones(6)
             tube.admissible(work, 8, sigma * unflipped, held, lo, hi, spare)
-            good = slopes[[twin.keeps(theta_s[n], theta_psi[n], u, sigma, held.min_rate) for u in slopes]]
+            good = slopes[twin.keeps(theta_s[n], theta_psi[n], slopes[:, None], sigma, held.min_rate)]
             between = slopes[(slopes > lo[n] + 1e-6) & (slopes < hi[n] - 1e-6)]
             assert np.isin(between, good).all()
             assert ((good >= lo[n] - 1e-6) & (good <= hi[n] + 1e-6)).all()

@@ -52,11 +52,9 @@ class TestJudge:
                 start.robot, start.hole, fractions, spins, first_point=first_point, rate=rate, mean=mean
             )
             for m, motion in enumerate(spins):
-                for branch in range(8):
-                    cost, count = twin.judge(
-                        start.robot, TOOL, start.hole, fractions, motion, branch, first_point=first_point,
-                        least_rate=rate, mean=mean,
-                    )  # fmt: skip
+                rules = {"first_point": first_point, "least_rate": rate, "mean": mean}
+                expected = twin.judge(start.robot, TOOL, start.hole, fractions, motion, **rules)
+                for branch, (cost, count) in enumerate(expected):
                     assert costs[m, branch] == pytest.approx(cost, abs=1e-9)
                     assert reversals[m, branch] == count
                     runnable += count >= 0
@@ -74,11 +72,11 @@ class TestJudge:
             for held in (start.robot, free):
                 spins = start.psi_t + np.array([[0.0, 5 * np.pi * rng.choice([-1, 1]), 0.0]])
                 costs, _ = judged(held, start.hole, fractions, spins)
-                for branch in range(8):
-                    cost, count = twin.judge(held, TOOL, start.hole, fractions, spins[0], branch, first_point=False)
+                joints = twin.path(held, TOOL, start.hole, fractions, spins[0])
+                expected = twin.judge(held, TOOL, start.hole, fractions, spins[0], first_point=False)
+                for branch, (cost, count) in enumerate(expected):
                     assert costs[0, branch] == pytest.approx(cost, abs=1e-9)
-                    joints = twin.path(held, TOOL, start.hole, fractions, spins[0], branch)
-                    wound += count >= 0 and np.ptp(joints, axis=0).max() > 2 * np.pi
+                    wound += count >= 0 and np.ptp(joints[:, branch], axis=0).max() > 2 * np.pi
         assert wound > 0 if SLOW else wound > 5
 
     def test_out_of_reach_is_1_and_no_more(self, robot, positions):

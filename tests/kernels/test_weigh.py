@@ -13,6 +13,13 @@ from zerorev.motion import kinematics
 NOWHERE = np.zeros(6)  # joints at the target, where no limit is examined
 
 
+@pytest.fixture(scope="module")
+def followed():
+    """Random legs, each traced and followed in dense samples."""
+    every = starts(1 if SLOW else 40, seed=10, deepest=0.03)
+    return [(start, start.traced(field.BLOCK), start.naive()) for start in every]
+
+
 class TestWeighLeg:
     """The short cut of `judge_leg` after `trace_leg`."""
 
@@ -25,10 +32,9 @@ class TestWeighLeg:
     @pytest.mark.parametrize("mean_rule", [False, True])
     @pytest.mark.parametrize("turn_inside", [False, True])
     @pytest.mark.parametrize("share", [1.0, 0.6, 0.2])
-    def test_says_what_is_said_of_the_traced_leg(self, share, mean_rule, turn_inside):
+    def test_says_what_is_said_of_the_traced_leg(self, followed, share, mean_rule, turn_inside):
         rng, compared, willing = np.random.default_rng(11), 0, 0
-        for start in starts(1 if SLOW else 40, seed=10, deepest=0.03):
-            leg, dense = start.traced(field.BLOCK), start.naive()
+        for start, leg, dense in followed:
             if leg is None or dense is None:
                 assert SLOW or leg is not None or self.weigh(start, *self.any(start))[0] == -np.inf
                 continue

@@ -96,21 +96,26 @@ class TestFigures:
             J = kinematics.jacobian(any_robot, BENT, joints)
             axial, lateral = compliance(J, STIFFNESS, direction)
 
-            def give(force, joints=joints):
+            jacobian = twin.jacobian(any_robot, joints, twin.tcp(any_robot, BENT, joints)[:3, 3])[:3]
+
+            def give(force, joints=joints, jacobian=jacobian):
                 """Of the tip, to a force [N]."""
-                point = twin.tcp(any_robot, BENT, joints)[:3, 3]
-                torque = twin.jacobian(any_robot, joints, point)[:3].T @ force
-                small = 1e-4
-                pushed = twin.tcp(any_robot, BENT, joints + small * torque / STIFFNESS)[:3, 3]
-                pulled = twin.tcp(any_robot, BENT, joints - small * torque / STIFFNESS)[:3, 3]
-                return (pushed - pulled) / (2 * small)
+                small = 1e-4 * jacobian.T @ force / STIFFNESS
+                pushed, pulled = (twin.tcp(any_robot, BENT, joints + step)[:3, 3] for step in (small, -small))
+                return (pushed - pulled) / 2e-4
 
             assert axial == pytest.approx(direction @ give(direction), rel=1e-6)
             x = np.cross(direction, [1.0, 0.3, -0.2])
             x /= np.linalg.norm(x)
             y = np.cross(direction, x)
-            across = [c * x + s * y for c, s in ((np.cos(a), np.sin(a)) for a in np.linspace(0, np.pi, 1801))]
-            most = max(force @ give(force) for force in across)
+
+            def across(angle, x=x, y=y, give=give):
+                force = np.cos(angle) * x + np.sin(angle) * y
+                return force @ give(force)
+
+            step = np.pi / 60
+            soft = max(np.arange(60) * step, key=across)  # then closer, where it gives most
+            most = max(across(angle) for angle in np.linspace(soft - step, soft + step, 61))
             assert lateral == pytest.approx(most, rel=1e-5)
 
     def test_compliance_of_a_motion_is_its_worst(self, robot, tool, position):

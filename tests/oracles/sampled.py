@@ -9,9 +9,14 @@ from zerorev.motion import kinematics
 FULL = 2 * np.pi
 
 
-def judge(robot, tool, hole, fractions, spins, branch, *, first_point, least_rate=0.0, mean=False):
-    """(eq. 4.7, reversals) with the thesis' weights; -1 reversals where the motion cannot be run."""
-    joints = path(robot, tool, hole, fractions, spins, branch)
+def judge(robot, tool, hole, fractions, spins, *, first_point, least_rate=0.0, mean=False):
+    """(eq. 4.7, reversals) of each branch with the thesis' weights; -1 reversals where the motion cannot be run."""
+    paths = path(robot, tool, hole, fractions, spins)
+    rules = {"first_point": first_point, "least_rate": least_rate, "mean": mean}
+    return [_judged(robot, hole, fractions, paths[:, branch], **rules) for branch in range(8)]
+
+
+def _judged(robot, hole, fractions, joints, *, first_point, least_rate, mean):
     if np.isnan(joints).any():
         return 1.0, -1
     steps, legs = np.diff(joints, axis=0), fractions.size - 1
@@ -28,8 +33,8 @@ def judge(robot, tool, hole, fractions, spins, branch, *, first_point, least_rat
     return cost, -1 if wrong else int(counts.sum())
 
 
-def path(robot, tool, hole, fractions, spins, branch):
-    """Continuous joints, from the first point's within (-pi, pi]; NaN where the branch cannot reach."""
+def path(robot, tool, hole, fractions, spins, branch=slice(None)):
+    """Continuous joints of one branch or all, from the first point's within (-pi, pi]; NaN where it cannot reach."""
     start, target, end = spins
     x = np.concatenate([fractions[::-1], fractions[1:]])
     outer = np.where(np.arange(x.size) < fractions.size, start, end)
