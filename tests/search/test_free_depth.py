@@ -84,7 +84,7 @@ def check_against_walks(seed, spins, tries):
 
 
 class TestBound:
-    @pytest.mark.parametrize("seed", range(900, 908))
+    @pytest.mark.parametrize("seed", range(900, 904))
     def test_is_never_below_a_stroke_that_is_found(self, seed):
         check_against_the_found(seed)
 
@@ -93,7 +93,7 @@ class TestBound:
         check_against_very_many_segments(seed)
 
     def test_is_never_below_random_legs(self):
-        assert sum(check_against_walks(seed, 40, 8) for seed in range(940, 944)) > 0
+        assert sum(check_against_walks(seed, 40, 8) for seed in (940, 942)) > 0
 
     @pytest.mark.parametrize(("target", "share"), CLOSE.items())
     def test_is_close_at_the_thesis_targets(self, target, share):
@@ -113,9 +113,9 @@ class TestBound:
     def test_a_greater_budget_costs_more_and_stays_within_it(self, seed):
         drilled = free(seed)
         found = deepest_free(*drilled.both)[0]
-        small, large = (bound_free_depth(Problem(*drilled.both), found, boxes) for boxes in (30_000, 200_000))
+        small, large = (bound_free_depth(Problem(*drilled.both), found, boxes) for boxes in (30_000, 80_000))
         assert small.boxes <= 30_000
-        assert large.boxes <= 200_000
+        assert large.boxes <= 80_000
         assert large.at_most <= small.at_most
 
     def test_where_no_stroke_is_without_a_reversal_next_to_none_is_allowed(self):
@@ -130,7 +130,7 @@ class TestBound:
 
     @pytest.mark.long
     def test_is_never_below_a_stroke_that_is_found_on_many_holes(self):
-        for seed in range(910, 926):
+        for seed in (*range(904, 908), *range(910, 926)):
             check_against_the_found(seed)
 
     @pytest.mark.long

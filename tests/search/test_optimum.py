@@ -27,12 +27,13 @@ from zerorev.search.rank import Order
 pytestmark = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="whole searches")
 
 OFF = Settings(min_rate=0.0)
+LITTLE = 5_000  # boxes of a proof, where what is found is asked for
 
 
 def case(name):
-    """Robot, tool, hole, settings of a job with one hole."""
+    """Robot, tool, hole, settings of a job with one hole, proven with little effort."""
     job = read_job(CASES / f"{name}.yaml")
-    return job.robot, job.tool, job.holes[0], job.settings
+    return job.robot, job.tool, job.holes[0], replace(job.settings, proof_boxes=LITTLE)
 
 
 def keeps(motion, settings):
@@ -89,7 +90,7 @@ class TestCases:
 class TestAgreement:
     def test_on_some_random_holes(self):
         for seed in (0, 3, 1009):  # at the last the plan's motion is deeper than what the search alone finds
-            check_agreement(random_hole(seed, narrowed=seed % 4 == 3))
+            check_agreement(random_hole(seed, narrowed=seed % 4 == 3).asking(proof_boxes=LITTLE))
 
     @pytest.mark.long
     def test_on_more_random_holes(self):
@@ -284,7 +285,7 @@ class TestLeadIn:
     @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.long) for seed in (2, 9))])
     def test_kept_whole_where_it_is_asked_for(self, seed):
         """By default it is shortened at these holes; and plan and deepest stroke agree here, too."""
-        drilled = random_hole(seed)
+        drilled = random_hole(seed).asking(proof_boxes=LITTLE)
         whole = deepest_as_drilled(*drilled.both)
         kept = drilled.asking(keep_lead_in=True)
         deepest = deepest_as_drilled(*kept.both)
@@ -304,7 +305,7 @@ class TestLeadIn:
             assert answer.verified.passed
 
     def test_where_there_is_none_a_finding_says_so(self, robot, tool, positions):
-        settings = Settings(keep_lead_in=True, lead_in=2.0)
+        settings = Settings(keep_lead_in=True, lead_in=2.0, proof_boxes=LITTLE)
         answer = plan(robot, tool, positions[0].hole, settings)
         assert answer.status == "infeasible"
         assert [(finding.level, finding.kind) for finding in answer.findings] == [("error", "lead_in")]
