@@ -5,6 +5,9 @@ OUT ?= out/demo
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 
+# what Python has compiled of a module is kept: hundreds of processes import the package while it is tested
+export PYTHONDONTWRITEBYTECODE =
+
 .PHONY: demo test long soak bench lint docs reference schemas clean
 
 demo: $(READY)  ## plan, check and export the three positions of the thesis, with figures
