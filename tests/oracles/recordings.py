@@ -98,3 +98,69 @@ def run_of(
 
 def _joints(robot, tool, T, branch):
     return np.unwrap(inverse(robot, T @ np.linalg.inv(tool.T_flange_tcp))[:, branch], axis=0)
+
+
+# --- metrics, once more ---
+
+
+@dataclass(frozen=True)
+class Plain:
+    """What a run comes to, by loops over plain numbers."""
+
+    path_mm: float
+    max_mm: float
+    rms_mm: float
+    parts_mm: tuple[float, float]
+    offset_mm: float
+
+
+def between(places: list[float], values: list[float], at: float) -> float:
+    """The value at a place, on the straight line between the two samples about it."""
+    for k in range(1, len(places)):
+        if places[k] >= at and places[k] > places[k - 1]:
+            share = (at - places[k - 1]) / (places[k] - places[k - 1])
+            return values[k - 1] + share * (values[k] - values[k - 1])
+    return values[-1]
+
+
+def plain_metrics(run: Run, window_mm: float, feed_mm_s: float) -> Plain:
+    """Deviation from the mean path of a run along +X whose tips are recorded, and whose command moves exactly."""
+    recording, hole = run.recording, run.drilling.hole
+    commanded = [1e3 * (x - hole.target[0]) for x in recording.tcp_commanded[:, 0]]
+    turn = max(range(len(commanded)), key=lambda k: commanded[k])
+    slow = 0.01 * feed_mm_s * (recording.time[1] - recording.time[0])
+    moving = [k for k in range(1, len(commanded)) if abs(commanded[k] - commanded[k - 1]) >= slow]
+    first, last = moving[0] - 1, moving[-1]
+    path = [0.0]
+    for k in range(first + 1, last + 1):
+        path.append(path[-1] + abs(commanded[k] - commanded[k - 1]))
+    zero = path[turn - first]
+    path = [each - zero for each in path]
+    lateral = [[1e3 * (recording.tcp[k, axis] - hole.target[axis]) for k in range(first, last + 1)] for axis in (1, 2)]
+    places = [path[0] + n * (path[-1] - path[0]) / 800 for n in range(801)]
+    even = [[between(path, values, place) for place in places] for values in lateral]
+    mean = [math.fsum(values) / 801 for values in even]
+    inside = [n for n in range(801) if abs(places[n]) <= window_mm]
+    apart = [(even[0][n] - mean[0], even[1][n] - mean[1]) for n in inside]
+    return Plain(
+        path[-1] - path[0],
+        max(math.hypot(*each) for each in apart),
+        math.sqrt(math.fsum(math.hypot(*each) ** 2 for each in apart) / len(apart)),
+        (max(abs(each[0]) for each in apart), max(abs(each[1]) for each in apart)),
+        math.hypot(*mean),
+    )
+
+
+def plain_reversals(angles: list[float], swing: float) -> int:
+    """Direction changes of a zigzag: far points between which an angle runs by `swing` or more."""
+    count, way, far = 0, 0, angles[0]
+    for k, angle in enumerate(angles):
+        if way == 0:
+            low, high = min(angles[: k + 1]), max(angles[: k + 1])
+            if angle - low >= swing or high - angle >= swing:
+                way, far = (1 if angle - low >= swing else -1), angle
+        elif (angle - far) * way >= 0:
+            far = angle
+        elif (far - angle) * way >= swing:
+            count, way, far = count + 1, -way, angle
+    return count

@@ -26,6 +26,8 @@ from zerorev.cli import (  # noqa: F401
     place,
     plan,
     rates,
+    recordings,
+    recordings_repeat,
     replay,
     reproduce,
     robots,

@@ -28,6 +28,7 @@ __all__ = [
     "need",
     "need_maps",
     "numbers",
+    "recordings_app",
 ]  # fmt: skip
 
 FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
@@ -66,6 +67,12 @@ app = App(
 
 map_app = App(name="map", default_parameter=Parameter(negative=(), show_default=False))
 app.command(map_app)
+recordings_app = App(
+    name="recordings",
+    help="Recordings of runs on a real arm (KRC4 trace, RSI, CSV): read, align, measure and compare them.",
+    default_parameter=Parameter(negative=(), show_default=False),
+)
+app.command(recordings_app)
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 
