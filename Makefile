@@ -25,7 +25,7 @@ test: lint  ## what must hold; the tests marked long are left to `make long`
 	@# kernels are compiled before several processes need them: two compilations of one may differ in the last bit
 	$(BIN)/zerorev plan examples/jobs/thesis_positions.yaml --json >/dev/null
 	$(BIN)/zerorev depth examples/jobs/thesis_positions.yaml --legs free --json >/dev/null
-	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q tests/kernels tests/verify/test_compiled.py -m "not long and not soak"
+	NUMBA_DISABLE_JIT=1 $(BIN)/pytest -q -n auto --dist loadgroup tests/kernels tests/verify/test_compiled.py -m "not long and not soak"
 	$(BIN)/pytest -q -n auto --dist loadgroup -m "not long and not soak"
 
 long: $(READY)  ## the tests that take minutes

@@ -73,14 +73,20 @@ class TestTraceLeg:
         assert Start(robot, far, 0, 0.0, 0.0).traced(25) is None
 
 
+@pytest.fixture(scope="module")
+def followed():
+    """Random legs, each traced finely and followed in dense samples."""
+    every = starts(2 if SLOW else 20, seed=4)
+    return [(start, start.traced(193), start.naive()) for start in every]
+
+
 class TestJudgeLeg:
     @pytest.mark.parametrize("mean_rule", [False, True])
     @pytest.mark.parametrize("turn_inside", [False, True])
-    def test_says_what_the_twin_says(self, mean_rule, turn_inside):
+    def test_says_what_the_twin_says(self, followed, mean_rule, turn_inside):
         rng = np.random.default_rng(3)
         compared = 0
-        for start in starts(2 if SLOW else 20, seed=4):
-            leg, dense = start.traced(193), start.naive()
+        for start, leg, dense in followed:
             if leg is None or dense is None or dense.derivative(1).max() > 3e3:
                 continue
             wanted = asked(start.robot, start.hole, min_rate=0.2, mean_rule=mean_rule, turn_inside=turn_inside)

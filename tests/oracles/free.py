@@ -26,6 +26,12 @@ def keeps(theta_s, theta_psi, slope, sigma, min_rate):
         return (sigma * (theta_s + slope * theta_psi) >= min_rate).all(axis=-1)
 
 
+def among(nodes, rates, slope, sigma, min_rate):
+    """Of some nodes of a row with all its rates those at which a slope keeps every joint going its way."""
+    theta_s, theta_psi = rates
+    return nodes[keeps(theta_s[nodes], theta_psi[nodes], slope, sigma, min_rate)]
+
+
 def reach(robot, tool, hole, branch, psi_t, sigma, *, step, turn, steepest, min_rate, longest, widest=np.pi):
     """How far legs out of one spin at the target get [m], by rows of `step` [m] and nodes of `turn` [rad].
 
@@ -53,14 +59,9 @@ def reach(robot, tool, hole, branch, psi_t, sigma, *, step, turn, steepest, min_
         arrived = np.zeros_like(reached)
         for move in range(-most, most + 1):
             slope = move * turn / step
-            leaves = reached & keeps(*here, slope, sigma, min_rate)
-            lands = np.zeros_like(reached)
-            if move >= 0:
-                lands[move:] = leaves[: leaves.size - move]
-            else:
-                lands[:move] = leaves[-move:]
-            if lands.any():
-                arrived |= lands & keeps(*there, slope, sigma, min_rate)
+            lands = among(np.flatnonzero(reached), here, slope, sigma, min_rate) + move
+            lands = lands[(lands >= 0) & (lands < psi.size)]
+            arrived[among(lands, there, slope, sigma, min_rate)] = True
         if not arrived.any():
             return (row - 1) * step
         reached, here = arrived, there
@@ -95,13 +96,8 @@ def viable(robot, tool, hole, branch, sigma, psi, *, step, steepest, min_rate, d
         leads = np.zeros_like(good)
         for move in range(-most, most + 1):
             slope = move * turn / step
-            lands = good & keeps(*there, slope, sigma, min_rate)
-            source = np.zeros_like(good)
-            if move >= 0:
-                source[: good.size - move] = lands[move:]
-            else:
-                source[-move:] = lands[:move]
-            if source.any():
-                leads |= source & keeps(*here, slope, sigma, min_rate)
+            source = among(np.flatnonzero(good), there, slope, sigma, min_rate) - move
+            source = source[(source >= 0) & (source < psi.size)]
+            leads[among(source, here, slope, sigma, min_rate)] = True
         good, there = leads, here
     return good
