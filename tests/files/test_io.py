@@ -350,7 +350,7 @@ def differences(a: Any, b: Any, path: str = "plan") -> list[str]:
     return [] if a == b else [f"{path}: {a!r} {b!r}"]
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(plan=plans())
 def test_a_plan_comes_back_and_is_written_the_same_again(plan: Plan, tmp_path: Path) -> None:
     first, second = tmp_path / "first.json", tmp_path / "second.json"
@@ -469,7 +469,7 @@ def mutated(text: str, changes: list[tuple[float, int, str]]) -> str:
     return text
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(changes=MUTATIONS)
 def test_a_mutated_job_is_read_or_refused(changes: list[tuple[float, int, str]], tmp_path: Path) -> None:
     (tmp_path / "job.yaml").write_text(mutated(JOB, changes), encoding="utf-8")
@@ -479,7 +479,7 @@ def test_a_mutated_job_is_read_or_refused(changes: list[tuple[float, int, str]],
         str(error).encode()  # fit for any terminal
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(changes=MUTATIONS)
 def test_a_mutated_csv_is_read_or_refused(changes: list[tuple[float, int, str]], tmp_path: Path) -> None:
     try:
@@ -488,7 +488,7 @@ def test_a_mutated_csv_is_read_or_refused(changes: list[tuple[float, int, str]],
         str(error).encode()  # fit for any terminal
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(changes=MUTATIONS)
 def test_a_mutated_plan_is_read_or_refused(changes: list[tuple[float, int, str]], tmp_path: Path) -> None:
     text = json.dumps(files.plan_to_json(small_plan()))
@@ -499,7 +499,7 @@ def test_a_mutated_plan_is_read_or_refused(changes: list[tuple[float, int, str]]
         str(error).encode()  # fit for any terminal
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(content=st.binary(max_size=40))
 def test_any_bytes_are_refused(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "file.yaml"

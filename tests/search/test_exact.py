@@ -271,7 +271,7 @@ class TestAgainstEveryPlanOfAGrid:
         robot = read_robot(names[seed % len(names)])
         weights = tuple(rng.choice([0.5, 1.0, 2.0, 3.0], 6))
         settings = replace(NO_THRESHOLD, blend=0.0, reversal_weights=weights)
-        self.compare(robot, tool, twin.random_hole(robot, seed), settings, 48)
+        self.compare(robot, tool, twin.random_hole(robot, seed), settings, 36)
 
     def test_is_never_worse_at_the_published_positions(self, robot, tool, found_at, position):
         best = twin.best_on_grid(robot, tool, position.hole, spins=40)

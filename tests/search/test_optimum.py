@@ -36,6 +36,11 @@ def case(name):
     return job.robot, job.tool, job.holes[0], replace(job.settings, proof_boxes=LITTLE)
 
 
+def any_hole(seed, boxes=Settings.proof_boxes):
+    """A random hole, every fourth with narrow limits."""
+    return random_hole(seed, narrowed=seed % 4 == 3).asking(proof_boxes=boxes)
+
+
 def keeps(motion, settings):
     """Zero reversals, and the motion threshold at every point."""
     return (
@@ -90,16 +95,16 @@ class TestCases:
 class TestAgreement:
     def test_on_some_random_holes(self):
         for seed in (0, 3, 1009):  # at the last the plan's motion is deeper than what the search alone finds
-            check_agreement(random_hole(seed, narrowed=seed % 4 == 3).asking(proof_boxes=LITTLE))
+            check_agreement(any_hole(seed, LITTLE))
 
     @pytest.mark.long
     def test_on_more_random_holes(self):
-        raised = [check_agreement(random_hole(seed, narrowed=seed % 4 == 3)) for seed in range(100, 116)]
+        raised = [check_agreement(any_hole(seed, LITTLE)) for seed in range(100, 116)]
         assert sum(raised) <= 1
 
     @pytest.mark.soak
     def test_on_a_thousand_random_holes(self, record_property):
-        raised = [check_agreement(random_hole(seed, narrowed=seed % 4 == 3)) for seed in range(1000, 2000)]
+        raised = [check_agreement(any_hole(seed)) for seed in range(1000, 2000)]
         record_property("measured", f"agreement on 1,000 random holes: the stroke raised by the plan on {sum(raised)}")
         assert sum(raised) <= 20
 
@@ -148,7 +153,7 @@ class TestFreeLegs:
     @pytest.mark.parametrize("cap_deg_per_mm", [0.5, 1.0, 5.0])
     def test_every_motion_keeps_the_cap(self, robot, tool, positions, cap_deg_per_mm):
         """Straight legs among free ones, too; where they would go deeper without the cap a finding says so."""
-        settings = replace(OFF, legs="free", max_twist=float(np.deg2rad(1e3 * cap_deg_per_mm)))
+        settings = replace(OFF, legs="free", max_twist=float(np.deg2rad(1e3 * cap_deg_per_mm)), proof_boxes=LITTLE)
         for position in positions:
             answer = plan(robot, tool, position.hole, settings)
             assert np.abs(answer.motion.profile.twist_rate).max() <= settings.max_twist * (1 + 1e-9)
@@ -251,12 +256,12 @@ class TestCheck:
         assert "planted" in none.findings[0].message
 
     @staticmethod
-    def check_plans(seeds):
+    def check_plans(seeds, boxes=Settings.proof_boxes):
         """Every plan passes; how many there were of each kind."""
         counts = {"zero": 0, "reversing": 0, "rejected": 0, "infeasible": 0}
         for seed in seeds:
             rng = np.random.default_rng(seed)
-            drilled = random_hole(seed, narrowed=seed % 4 == 3).asking(blend=float(rng.choice([1e-3, 5e-3, 0.03])))
+            drilled = any_hole(seed, boxes).asking(blend=float(rng.choice([1e-3, 5e-3, 0.03])))
             deepest = deepest_stroke(*drilled.all).depth
             within = deepest * rng.choice([0.3, 0.9, 0.99, 1.02])
             answer = plan(*drilled.deep(within if within > 0 else 0.02 * drilled.robot.reach).all)
@@ -270,7 +275,7 @@ class TestCheck:
 
     @pytest.mark.long
     def test_random_plans_pass_their_own_check(self):
-        counts = self.check_plans(range(5000, 5100))
+        counts = self.check_plans(range(5000, 5100), LITTLE)
         assert counts["zero"] >= 60
         assert counts["infeasible"] <= 10
 
