@@ -116,21 +116,69 @@ def altered(data: bytes, how: str) -> bytes:
 @pytest.mark.parametrize("how", ["emptied", "cut", "one byte", "as Numba writes it", "something else"])
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
 def test_a_damaged_entry_is_made_again(filled: Path, ending: str, how: str):
-    (file,) = (filled / "cache").rglob(f"*.{ending}")
-    sound = file.read_bytes()
-    file.write_bytes(altered(sound, how))
+    files = list((filled / "cache").rglob(f"*.{ending}"))
+    assert len(files) == (1 if ending == "nbi" else 2)  # the body and the machine code
+    sound = [file.read_bytes() for file in files]
+    for file, data in zip(files, sound, strict=True):
+        file.write_bytes(altered(data, how))
     assert run(filled) == ("42.0 1\n", KEPT)
-    assert file.read_bytes() != altered(sound, how)
+    assert [file.read_bytes() != altered(data, how) for file, data in zip(files, sound, strict=True)].count(False) == 0
+
+
+def test_damaged_machine_code_is_made_again_of_a_sound_body(filled: Path):
+    machine_code = max((filled / "cache").rglob("*.nbc"))
+    damaged = altered(machine_code.read_bytes(), "one byte")
+    machine_code.write_bytes(damaged)
+    assert run(filled) == ("42.0 0\n", "")
+    assert machine_code.read_bytes() != damaged
+
+
+BOTH = """
+import numpy as np
+from zerorev.kernels._jit import kernel
+
+@kernel
+def made(size):
+    if size < 0:
+        raise ValueError("less than nothing")
+    return np.ones(size)
+
+@kernel
+def user(size):
+    return made(size)[0]
+
+print(user(2), made(2), [sum(each.stats.cache_misses.values()) for each in (user, made)])
+for each in (user, made):
+    try:
+        each(-1)
+    except ValueError as error:
+        print(error)
+"""
+
+
+def test_a_kernel_that_a_kernel_and_python_call_is_loaded_whole(tmp_path: Path):
+    """The class of the array that Python is given is a constant of the wrapper, the message one of the body."""
+    (tmp_path / "asking.py").write_text(BOTH)
+    paths = f"{tmp_path}:{Path(zerorev.__file__).parents[1]}"
+    environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    for misses in (1, 0):
+        done = subprocess.run(
+            [sys.executable, "-c", "import asking"], env=environment, capture_output=True, text=True, check=True
+        )
+        assert done.stdout == f"1.0 [1. 1.] [{misses}, {misses}]\nless than nothing\nless than nothing\n"
 
 
 @pytest.mark.parametrize("ending", ["nbi", "nbc", "lock"])
 def test_an_entry_that_may_not_be_read_is_made_again(filled: Path, ending: str):
-    (file,) = (filled / "cache").rglob(f"*.{ending}")
-    file.chmod(0)
+    files = list((filled / "cache").rglob(f"*.{ending}"))
+    for file in files:
+        file.chmod(0)
     try:
         assert run(filled)[0] == ("42.0 0\n" if ending == "lock" else "42.0 1\n")
     finally:
-        file.chmod(0o600)
+        for file in files:
+            if file.exists():
+                file.chmod(0o600)
     assert run(filled) == ("42.0 0\n", "")
 
 

@@ -21,6 +21,8 @@ from numba.core import caching
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.runtime.nrt import rtsys
 
+from zerorev.kernels._code import read_body, read_called, written_body, written_called
+
 __all__ = ["Cache", "Turn", "cache_of", "is_kept", "stamp"]
 
 SUM = 4  # [bytes] of the sum in front of what a file holds
@@ -29,7 +31,7 @@ SUM = 4  # [bytes] of the sum in front of what a file holds
 _NEEDED = (
     caching.FunctionCache.load_overload,
     caching.FunctionCache.save_overload,
-    caching.FunctionCache._load_overload,
+    caching.FunctionCache._index_key,
     caching.IndexDataCacheFile._load_index,
     caching.IndexDataCacheFile._save_index,
     caching.IndexDataCacheFile._load_data,
@@ -65,28 +67,51 @@ class Cache(caching.FunctionCache):
         self._turn = turn
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled kernel, or None: it is this process's turn to compile it."""
-        rtsys.initialize(target_context)  # what allocates arrays
-        found = self._loaded(sig, target_context)
-        if found is None and self._turn.taken(self._cache_path):
-            found = self._loaded(sig, target_context)
-        return found
+        """The body of a kernel, or None: it is this process's turn to compile it."""
+        return self._found("body", read_body, sig, target_context)
+
+    def load_called(self, sig: Any, target_context: Any) -> Any:
+        """The machine code of a kernel, or None: it is this process's turn to make it."""
+        return self._found("machine code", read_called, sig, target_context)
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled kernel, if that can be."""
-        try:
-            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
-        except OSError:  # a full disk, or the folder is not ours any more
-            _not_kept()
+        """Keep the body of a kernel, if that can be."""
+        self._keep("body", written_body, sig, data)
 
-    def _loaded(self, sig: Any, target_context: Any) -> Any:
+    def save_called(self, sig: Any, data: Any) -> None:
+        """Keep the machine code of a kernel, if that can be."""
+        self._keep("machine code", written_called, sig, data)
+
+    def _found(self, kind: str, read: Callable[[Any, Any], Any], sig: Any, target_context: Any) -> Any:
+        rtsys.initialize(target_context)  # what allocates arrays
+        key = self._key(kind, sig, target_context.codegen())
+        found = self._loaded(key, read, target_context)
+        if found is None and self._turn.taken(self._cache_path, f"{kind} of {self._impl.filename_base}"):
+            found = self._loaded(key, read, target_context)
+        return found
+
+    def _loaded(self, key: Any, read: Callable[[Any, Any], Any], target_context: Any) -> Any:
         try:
-            return self._load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+            kept = self._cache_file.load(key)  # type: ignore[no-untyped-call]
+            return None if kept is None else read(target_context, kept)
         except Exception:
             # sound, but of another version: for one, a class that a kernel is given was called otherwise
             with suppress(OSError):
                 self.flush()  # type: ignore[no-untyped-call]
             return None
+
+    def _keep(self, kind: str, written: Callable[[Any], Any], sig: Any, data: Any) -> None:
+        if not self._impl.check_cachable(data):
+            return
+        try:
+            self._impl.locator.ensure_cache_path()
+            key = self._key(kind, sig, data.codegen)
+            self._cache_file.save(key, written(data))  # type: ignore[no-untyped-call]
+        except OSError:  # a full disk, or the folder is not ours any more
+            _not_kept()
+
+    def _key(self, kind: str, sig: Any, codegen: Any) -> tuple[Any, ...]:
+        return kind, *self._index_key(sig, codegen)  # type: ignore[no-untyped-call]
 
 
 class _Files(caching.IndexDataCacheFile):
@@ -161,59 +186,79 @@ def _not_kept() -> None:
     _kept = False
 
 
-def cache_of(function: Callable[..., Any], turn: Turn) -> Cache | caching.NullCache:
+class _None(caching.NullCache):
+    """A cache that keeps nothing."""
+
+    def load_called(self, sig: Any, target_context: Any) -> None:
+        """Nothing."""
+
+    def save_called(self, sig: Any, data: Any) -> None:
+        """Not."""
+
+
+def cache_of(function: Callable[..., Any], turn: Turn) -> Cache | _None:
     """The cache of a kernel, or one that keeps nothing where there is no place for it."""
     try:
         return Cache(function, turn)
     except (RuntimeError, OSError):
         _not_kept()
-        return caching.NullCache()
+        return _None()
 
 
 class Turn:
-    """The turn to compile: one process at a time, so that what several processes need at once is compiled once.
+    """The turn to compile a kernel: one process at a time, so that what several need at once is compiled once.
 
-    The same kernel compiled twice need not round alike: how what it calls is inlined depends on whether that was
-    compiled in the same process or loaded.
+    A process that compiles one kernel waits for those that it calls, and no kernel calls itself over others: so no two
+    processes wait for each other.
     """
 
     def __init__(self) -> None:
-        """Begin without it."""
-        self._depth = 0
-        self._file: int | None = None
+        """Begin without any."""
+        self._held: list[list[tuple[int, int]]] = []  # file and place in it, kernel in kernel
+        self._files: dict[str, int] = {}  # one a folder: closing any other would give up all turns of the process
 
     @contextmanager
-    def needed(self) -> Iterator[None]:
-        """Around the compilation of a kernel and of all that it calls; a turn that was taken ends with it."""
+    def needed(self) -> Iterator[bool]:
+        """Around the compilation of a kernel and of all that it calls; the turns that it took end with it.
+
+        Gives whether another kernel needs it.
+        """
         with global_compiler_lock:  # one thread at a time
-            self._depth += 1
+            self._held.append([])
             try:
-                yield
+                yield len(self._held) > 1
             finally:
-                self._depth -= 1
-                if not self._depth and self._file is not None:
-                    os.close(self._file)
-                    self._file = None
+                for file, place in self._held.pop():
+                    _lock(file, place, free=True)
+                if not self._held:
+                    while self._files:
+                        os.close(self._files.popitem()[1])
 
-    def taken(self, folder: str) -> bool:
+    def taken(self, folder: str, what: str) -> bool:
         """Wait for the turn; whether others may have compiled meanwhile."""
-        if self._file is not None:
-            return False
+        place = int.from_bytes(hashlib.sha256(what.encode()).digest()[:7])
         try:
-            import fcntl
-
-            os.makedirs(folder, exist_ok=True)
-            self._file = os.open(Path(folder, "kernels.lock"), os.O_RDWR | os.O_CREAT, 0o666)
-            fcntl.flock(self._file, fcntl.LOCK_EX)
+            if folder not in self._files:
+                os.makedirs(folder, exist_ok=True)
+                self._files[folder] = os.open(Path(folder, "kernels.lock"), os.O_RDWR | os.O_CREAT, 0o666)
+            file = self._files[folder]
+            _lock(file, place)
         except (ImportError, OSError):
             return False  # no such locks here, or no cache to share
+        self._held[-1].append((file, place))
         return True
+
+
+def _lock(file: int, place: int, *, free: bool = False) -> None:
+    import fcntl
+
+    fcntl.lockf(file, fcntl.LOCK_UN if free else fcntl.LOCK_EX, 1, place)
 
 
 @cache
 def stamp() -> str:
-    """A digest of all files of kernels."""
+    """A digest of all files that kernels are made of and by."""
     found = hashlib.sha256()
-    for file in sorted(Path(__file__).parent.glob("*.py")):
+    for file in sorted({*Path(__file__).parent.glob("*.py")} - {Path(__file__).with_name("_ahead.py")}):
         found.update(file.name.encode() + b"\0" + file.read_bytes())
     return found.hexdigest()

@@ -7,19 +7,21 @@ This and the cache build on private parts of Numba. Where one of them is missing
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any
 
-import numba
-from numba.core import event
-from numba.core.codegen import CPUCodeLibrary
-from numba.core.dispatcher import Dispatcher
+from numba.core import config, event
+from numba.core.dispatcher import Dispatcher, _FunctionCompiler  # type: ignore[attr-defined]
 from numba.core.options import DefaultOptions
+from numba.core.registry import CPUDispatcher
+from numba.core.sigutils import normalize_signature
+from numba.core.types import unliteral
 
+from zerorev.kernels import _ahead
 from zerorev.kernels._cache import Turn, cache_of, is_kept
+from zerorev.kernels._code import body_of, called
 
-__all__ = ["EACH_TIME", "ONCE", "compiled_here", "turn"]
+__all__ = ["EACH_TIME", "ONCE", "called_so_far", "compiled_here", "turn"]
 
 ONCE = "compiling kernels: takes a minute or two, once; then they are cached"
 EACH_TIME = (
@@ -27,42 +29,83 @@ EACH_TIME = (
     "(the environment variable NUMBA_CACHE_DIR names one)"
 )
 
-# what is used of Numba that it need not have; `_cache` names the rest
-_NEEDED = DefaultOptions._nrt, CPUCodeLibrary._finalize_final_module, Dispatcher.compile
+# what is used of Numba that it need not have; `_cache` and `_code` name the rest
+_NEEDED = (
+    DefaultOptions._nrt,
+    Dispatcher.add_overload,
+    Dispatcher.compile,
+    Dispatcher.get_call_template,
+    _FunctionCompiler._customize_flags,
+)
 
-_njit: Any = numba.njit  # whose stubs do not know of `_nrt`
-
-
-@contextmanager
-def _own_copies() -> Iterator[None]:
-    """Everything compiled meanwhile calls its own copies of the kernels that it calls, and no others.
-
-    Numba compiles what a kernel calls into the kernel once more, under the same name, and optimises each copy in its
-    place, so that they round differently. All copies of a name in a process give way to the first: in the process that
-    compiles that is the one by itself, in those that load it is that of the kernel which is loaded first. With a name
-    of its own each is used where it was made, and no result depends on what was compiled or loaded before.
-    """
-    finalize = CPUCodeLibrary._finalize_final_module
-
-    def finalize_with_own_copies(library: Any) -> None:
-        if library._shared_module is None:  # not loaded, but compiled
-            library._shared_module = library._final_module.clone()  # for others to link, as Numba makes it
-            for function in library._shared_module.functions:
-                if not function.is_declaration and function.linkage.name == "external":
-                    function.linkage = "linkonce_odr"
-            for function in library._final_module.functions:
-                if not function.is_declaration and function.linkage.name == "linkonce_odr":
-                    function.linkage = "internal"
-        finalize(library)  # type: ignore[no-untyped-call]
-
-    CPUCodeLibrary._finalize_final_module = finalize_with_own_copies  # type: ignore[method-assign]
-    try:
-        yield
-    finally:
-        CPUCodeLibrary._finalize_final_module = finalize  # type: ignore[method-assign]
-
+_parts: Any = normalize_signature  # whose stubs have no types
+_any: Any = unliteral
 
 turn = Turn()
+
+called_so_far: list[tuple[str, tuple[Any, ...]]] = []
+"""The kernels that Python has called in this process, with the types of what they were given, in that order."""
+
+
+class Kernel(CPUDispatcher):
+    """A compiled function with the cache and the turn of this package.
+
+    What other kernels call is in `overloads`, as Numba has it: bodies (`zerorev.kernels._code`). A body is neither
+    compiled nor loaded where the machine code that Python calls is in the cache.
+    """
+
+    _compiler: Any  # Numba's own, of which its stubs say nothing
+    _cache_hits: Any
+    _insert: Any
+
+    def __init__(self, py_func: Callable[..., Any], targetoptions: dict[str, Any]) -> None:
+        """As Numba's own."""
+        super().__init__(py_func=py_func, targetoptions=targetoptions)
+        self._cache = cache_of(py_func, turn)
+        self._compiler._customize_flags = _body_alone
+        self._called: dict[tuple[Any, ...], Any] = {}
+        self._name = f"{py_func.__module__}.{py_func.__name__}"
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """How a kernel calls this one: with 0 as with any integer, so as not to compile it once more for each."""
+        return super().get_call_template(
+            [_any(each) for each in args], {name: _any(each) for name, each in kws.items()}
+        )
+
+    def add_overload(self, cres: Any) -> None:
+        """Keep a body that was just compiled, or loaded."""
+        if cres.entry_point is None:  # compiled
+            cres = body_of(cres)
+            self.targetctx.insert_user_function(  # type: ignore[no-untyped-call]
+                cres.entry_point, cres.fndesc, [cres.library]
+            )
+        self.overloads[tuple(cres.signature.args)] = cres
+
+    def compile(self, sig: Any) -> Any:
+        """Compile or load what is called with arguments of some types: a body for a kernel, machine code for Python."""
+        with turn.needed() as by_kernel:
+            if by_kernel:
+                return super().compile(sig)
+            args, _ = _parts(sig)
+            made = self._called.get(args) or self._cache.load_called(sig, self.targetctx)
+            if made is None:
+                if is_kept():
+                    _ahead.begin(self._name)
+                super().compile(sig)
+                made = called(self.overloads[args], self.targetoptions["_nrt"])
+                self._cache.save_called(sig, made)
+                _ahead.report(self._name, called=True)
+            else:
+                self._cache_hits[sig] += 1
+            self._called[args] = made
+            called_so_far.append((self._name, args))
+            self._insert([each._code for each in args], made.entry_point, False)
+            return made.entry_point
+
+
+def _body_alone(flags: Any) -> Any:
+    flags.no_compile = flags.no_cpython_wrapper = flags.no_cfunc_wrapper = True
+    return flags
 
 
 def compiled_here(function: Callable[..., Any], counted: bool, options: dict[str, Any]) -> Any:
@@ -73,21 +116,13 @@ def compiled_here(function: Callable[..., Any], counted: bool, options: dict[str
         counted: whether holders of arrays are counted.
         options: of the compiler.
     """
-    compiled = _njit(**options, _nrt=counted)(function)
-    if isinstance(compiled, Dispatcher):  # not so with NUMBA_DISABLE_JIT
-        compiled._cache = cache_of(function, turn)  # type: ignore[attr-defined]
-        compile_or_load = compiled.compile
-
-        def compile_in_turn(sig: Any) -> Any:
-            with turn.needed(), _own_copies():
-                return compile_or_load(sig)
-
-        compiled.compile = compile_in_turn  # type: ignore[method-assign]
-    return compiled
+    if config.DISABLE_JIT:  # type: ignore[attr-defined]
+        return function
+    return Kernel(function, {**options, "nopython": True, "_nrt": counted})
 
 
 class _SayOnce(event.Listener):
-    """Logs the first compilation of a process; loading from the cache does not count."""
+    """Logs the first compilation of a process, and how far it is; loading from the cache does not count."""
 
     said = False
 
@@ -97,7 +132,8 @@ class _SayOnce(event.Listener):
             logging.getLogger("zerorev").warning(ONCE if is_kept() else EACH_TIME)
 
     def on_end(self, event: event.Event) -> None:
-        pass
+        if isinstance(event.data["dispatcher"], Kernel):
+            _ahead.report(event.data["dispatcher"]._name, called=False)
 
 
 event.register("numba:compile", _SayOnce())  # type: ignore[no-untyped-call]

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from zerorev.kernels._ahead import expect
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
@@ -51,6 +52,7 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
     settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    expect(f"plan with {settings.legs} legs")
     if too_short(drilling):
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
@@ -79,6 +81,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         status is `infeasible` and the hole is as it was.
     """
     settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    expect(f"deepest stroke with {settings.legs} legs")
     deepest = deepest_as_drilled(drilling, settings)
     drilling = drilling.without_motion()
     hole = drilling.hole

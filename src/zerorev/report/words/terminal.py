@@ -199,7 +199,10 @@ def notices() -> Iterator[None]:
     handler.setFormatter(_Visible("note: %(message)s"))
     logger = logging.getLogger("zerorev")
     logger.addHandler(handler)
+    level = logger.level
+    logger.setLevel(logging.INFO)  # how far it is
     try:
         yield
     finally:
+        logger.setLevel(level)
         logger.removeHandler(handler)
