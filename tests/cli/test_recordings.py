@@ -88,6 +88,21 @@ def test_repeat(capsys):
     assert "A1 0, A2 0" in out
 
 
+def test_compare(capsys, tmp_path):
+    page = tmp_path / "page.html"
+    code, out, _ = run(capsys, "recordings", "compare", "baseline", "optimised.csv", "-o", page, *PLAN)
+    assert code == 0
+    assert f"page written to {page}" in out
+    assert "optimised.csv" in page.read_text()
+    before = (page.parent / "page.html").read_bytes()
+    code, _, err = run(capsys, "recordings", "compare", "baseline.csv", "optimised.csv", "-o", "optimised.csv", *PLAN)
+    assert code == 2
+    assert "which is read" in err
+    code, _, err = run(capsys, "recordings", "compare", "baseline.csv", "optimised.csv", "-o", page)
+    assert code == 2
+    assert page.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [

@@ -27,6 +27,7 @@ from zerorev.cli import (  # noqa: F401
     plan,
     rates,
     recordings,
+    recordings_compare,
     recordings_repeat,
     replay,
     reproduce,
