@@ -2,9 +2,9 @@
 
     python tools/kernels_ahead.py
 
-Each question is asked of the positions of the thesis, in a process of its own. That of the most machine code comes
-first, since it takes longest; then those that are called last, to which the process that asks comes last.
-`tests/kernels/test_ahead.py` asks the same and compares.
+Each question is asked of the positions of the thesis, or of its plane, in a process of its own. The kernel of the most
+machine code comes first, since it takes longest; then those that are called last, to which the process that asks comes
+last. `tests/kernels/test_ahead.py` asks the same and compares.
 """
 
 from __future__ import annotations
@@ -18,20 +18,32 @@ from zerorev.kernels._ahead import LIST
 __all__ = ["ASKED", "called_for"]
 
 ASKED = {
-    f"{what} with {legs} legs": f"zr.{function}(job.robot, job.tool, hole, replace(job.settings, legs={legs!r}))"
+    f"{what} with {legs} legs": f"""
+for hole in job.holes:
+    zr.{function}(job.robot, job.tool, hole, replace(job.settings, legs={legs!r}))
+"""
     for legs in ("straight", "free")
     for what, function in (("plan", "plan"), ("deepest stroke", "plan_deepest"))
+} | {
+    "map of deepest": """
+with TemporaryDirectory() as folder:
+    run_map(read_map_file("examples/maps/table5_plane.yaml"), Path(folder, "map.zarr"))
+"""
 }
 ASKING = """
 import json
 from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
 import zerorev as zr
+from zerorev.files.map_file import read_map_file
 from zerorev.kernels._ahead import kernel_of, written_type
 from zerorev.kernels._compiling import called_so_far
+from zerorev.maps.run import run_map
 
 job = zr.read_job("examples/jobs/thesis_positions.yaml")
-for hole in job.holes:
-    {asked}
+{asked}
 
 def size(kernel, arguments):
     key = kernel._cache._key("machine code", arguments, kernel.targetctx.codegen())

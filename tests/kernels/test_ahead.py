@@ -112,6 +112,20 @@ def test_without_a_helper_the_answers_are_the_same(tmp_path: Path, broken: str, 
     assert asked(tmp_path, broken=broken) == f"[3.0, 4.0, 4.0] {started} [1, 1]\n"
 
 
+def test_it_says_how_far_it_is_and_which_kernel_it_is_at(tmp_path: Path):
+    spoken = (
+        "import logging; logging.basicConfig(level=logging.INFO, stream=sys.stdout, format='%(message)s'); "
+        "_ahead.SECONDS_BETWEEN_LINES = 0.0; _ahead.spawn.get_executable = lambda: '/bin/false'"
+    )
+    _, *lines, answers = asked(tmp_path, broken=spoken).splitlines()
+    said = [line.removeprefix("compiling kernels: ") for line in lines]
+    assert said == [
+        f"{done} of 3, on 2 cores, now asking.{kernel}"
+        for done, kernel in ((0, "first"), (1, "first"), (1, "second"), (2, "second"), (2, "third"), (3, "third"))
+    ]
+    assert answers == "[3.0, 4.0, 4.0] 1 [1, 1]"
+
+
 @pytest.mark.parametrize("command", [["--help"], ["robots"], ["plan", "--help"]], ids=" ".join)
 def test_a_command_that_needs_no_kernel_compiles_none(tmp_path: Path, command: list[str]):
     done = subprocess.run(

@@ -32,8 +32,10 @@ SECONDS_BETWEEN_LINES = 5.0
 _lock = threading.Lock()
 _question: str | None = None
 _helpers: list[Any] = []
-_begun = _helping = False
-_done, _shown = 0, 0.0
+_begun: str | None = None  # the question for which helpers were called, once a process
+_made: set[str] = set()  # of its kernels
+_helping = False
+_shown = 0.0
 
 
 def expect(question: str) -> None:
@@ -63,7 +65,7 @@ def begin(kernel: str) -> None:
         return  # of the processes of one question, the first finds out what is missing
     if find_spec("fcntl") is None:
         return  # no turns (`zerorev.kernels._cache`), so that each would compile all
-    _begun, _shown = True, time.monotonic()
+    _begun, _shown = _question, time.monotonic()
     for turn in range(min(_cores() - 1, MOST_HELPERS, len(calls) - 1)):
         code = f"import sys; sys.path[:] = {sys.path!r}; import {__name__} as a; a._help({_question!r}, {turn})"
         try:
@@ -104,18 +106,21 @@ def report(kernel: str, *, called: bool) -> None:
         kernel: its name.
         called: whether Python calls it, which is what counts, or a kernel.
     """
-    global _done, _shown
+    global _shown
     if _helping:
         sys.stdout.write(f"{'+' if called else '-'} {kernel}\n")
         sys.stdout.flush()
         return
     with _lock:
-        _done += called
+        if _begun is None or _begun != _question:
+            return
+        listed = {name for name, _ in _listed(_begun)}
+        _made.update({kernel} & listed if called else ())
         now = time.monotonic()
-        if not _begun or now - _shown < SECONDS_BETWEEN_LINES:
+        if now - _shown < SECONDS_BETWEEN_LINES:
             return
         _shown = now
-        done, cores = f"{_done} of {len(_listed(_question))}", 1 + len(_helpers)
+        done, cores = f"{len(_made)} of {len(listed)}", 1 + len(_helpers)
     name = kernel.removeprefix("zerorev.")
     logging.getLogger("zerorev").info("compiling kernels: %s, on %s cores, now %s", done, cores, name)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import prod
 from pathlib import Path
 
+from zerorev.kernels._ahead import expect
 from zerorev.maps.cells import Block, Values, answer
 from zerorev.maps.workspace import MapStore
 from zerorev.model.map_task import MapTask, Question
@@ -94,4 +95,5 @@ class _Answerer:
         self.question = question
 
     def __call__(self, block: Block) -> Answered:
+        expect(f"map of {self.question.quantity}")
         return block.number, answer(self.question, block)
