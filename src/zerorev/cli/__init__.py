@@ -28,6 +28,8 @@ from zerorev.cli import (  # noqa: F401
     rates,
     recordings,
     recordings_compare,
+    recordings_holes,
+    recordings_record,
     recordings_repeat,
     replay,
     reproduce,
