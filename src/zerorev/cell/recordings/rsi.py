@@ -28,6 +28,7 @@ MAX_DOCUMENT = 65_535  # bytes: what a datagram can hold
 MAX_DOCUMENTS = 500_000  # half an hour of 4 ms
 MAX_UNPACKED = 2**30  # bytes
 MAX_NAMES = 400
+MAX_VALUES = 20_000_000
 PIECE = 2**18
 END = b"</Rob>"
 _AXES = tuple(f"A{n}" for n in range(1, 7))
@@ -70,6 +71,8 @@ def read_rsi(path: str | Path, mapping: Mapping = NO_MAPPING) -> Recording:
                 if len(names) == MAX_NAMES:
                     raise InputError(f"more than {MAX_NAMES} names", where=where, accepted=f"{MAX_NAMES} or less")
                 names[name] = len(names)
+        if len(rows) * len(names) > MAX_VALUES:
+            raise InputError(f"more than {MAX_VALUES:,} numbers", where=where, accepted="a shorter capture")
         rows.append(array("d", [values.get(name, np.nan) for name in names]))
     if not rows:
         raise InputError("no document", where=source, accepted='an RSI capture: <Rob Type="KUKA">...</Rob>')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,27 +37,28 @@ def read_csv(path: str | Path, mapping: Mapping = NO_MAPPING) -> Recording:
     rows = rows_of(read_bytes(Path(path), "a recording (CSV)"), source)
     line, header = next(rows, (1, []))
     meanings = _meanings(header, mapping, f"{source}, line {line}")
-    table: list[list[float]] = []
+    table, count = array("d"), 0
     last = -math.inf
     time_at = next(n for n, meaning in enumerate(meanings) if meaning is not None and meaning.member == "time")
     for line, cells in rows:
         where = f"{source}, line {line}"
         if len(cells) != len(header):
             raise InputError(f"{len(cells)} cells", where=where, accepted=f"{len(header)} cells, as in the header")
-        table.append([_value(cell, meaning, where) for cell, meaning in zip(cells, meanings, strict=True) if meaning])
+        table.extend(_value(cell, meaning, where) for cell, meaning in zip(cells, meanings, strict=True) if meaning)
+        count += 1
         time = _value(cells[time_at], meanings[time_at], where)
         if time <= last:
             raise InputError(
                 f"the time {time:g} does not rise after {last:g}", where=where, accepted="times that rise row by row"
             )
         last = time
-        if len(table) > MAX_ROWS:
+        if count > MAX_ROWS:
             raise InputError(f"more than {MAX_ROWS:,} rows", where=where, accepted=f"{MAX_ROWS:,} or less")
     if not table:
         raise InputError("no rows", where=source, accepted="a header and rows of numbers")
     known = [meaning for meaning in meanings if meaning is not None]
-    array = np.array(table)
-    values = {(each.member, each.index): array[:, n] * each.factor for n, each in enumerate(known)}
+    columns = np.frombuffer(table).reshape(count, len(known))
+    values = {(each.member, each.index): columns[:, n] * each.factor for n, each in enumerate(known)}
     unknown = [one_line(name) for name, meaning in zip(header, meanings, strict=True) if meaning is None]
     return assembled(Channels(source, values.pop(("time", 0)), values, unknown))
 
