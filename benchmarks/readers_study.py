@@ -7,6 +7,7 @@ The table stands in docs/security.md.
 
 from __future__ import annotations
 
+import gzip
 import json
 import multiprocessing
 import re
@@ -22,6 +23,11 @@ from typing import Any
 import numpy as np
 
 import zerorev as zr
+from zerorev.cell.recordings.channels import column_name
+from zerorev.cell.recordings.krc4_write import write_krc4
+from zerorev.cell.recordings.read import read_recording
+from zerorev.cell.recordings.rsi import MAX_DOCUMENTS
+from zerorev.cell.recordings.table import MAX_ROWS as MOST_RECORDED
 from zerorev.files.io import plan_to_json, read_plan
 from zerorev.files.map_file import read_map_file
 from zerorev.files.schema import MOST_HOLES
@@ -31,6 +37,7 @@ from zerorev.files.text import MAX_BYTES, MAX_ROWS
 from zerorev.files.text import MAX_VALUES as JSON_VALUES
 from zerorev.files.urdf import MOST_PARTS, read_urdf
 from zerorev.files.yaml_text import MAX_VALUES
+from zerorev.model.recording import JOINT_ARRAYS, Recording
 from zerorev.program.dialects import MOST_BYTES, read_program
 from zerorev.program.export import export
 from zerorev.report.scene.urdf_meshes import MOST_MESH, _loaded
@@ -131,6 +138,39 @@ def _sheet(path: Path) -> object:
     return sheet_rows(path.read_text(), "base_y", zr.read_tool("thesis_drill"), np.eye(4))
 
 
+def _recorded_table(folder: Path) -> Path:
+    names = ",".join(column_name(member, n) for member in JOINT_ARRAYS for n in range(6))
+    row = "," + ",".join(["1.5"] * 24)
+    count = min(MOST_RECORDED, (MAX_BYTES - 1000) // (len(row) + 8))
+    with (folder / "run.csv").open("w") as stream:
+        stream.write(f"t_s,{names}\n")
+        stream.writelines(f"{n}{row}\n" for n in range(count))
+    return folder / "run.csv"
+
+
+def _capture(folder: Path) -> Path:
+    axes = " ".join(f'A{n}="{n}.123456"' for n in range(1, 7))
+    tip = 'X="1.5" Y="2.5" Z="3.5" A="0" B="90" C="0"'
+    body = f"<RIst {tip}/><RSol {tip}/><AIPos {axes}/><ASPos {axes}/>"
+    with gzip.open(folder / "run.xml.gz", "wb", compresslevel=1) as stream:
+        for n in range(MAX_DOCUMENTS):
+            stream.write(f'<Rob Type="KUKA">{body}<IPOC>{4 * n}</IPOC></Rob>\n'.encode())
+    return folder / "run.xml.gz"
+
+
+def _trace(folder: Path) -> Path:
+    """Six files of four channels, a gibibyte together; empty but for their headers."""
+    time_of_it = np.arange(8.0)
+    write_krc4(Recording(time_of_it, *np.zeros((3, 8, 6)), torque_commanded=np.ones((8, 6))), folder / "run")
+    rows = 2**30 // 6 // 32
+    for header in folder.glob("*.dat"):
+        text = header.read_text(encoding="cp1252").replace("220,8", f"220,{rows}")
+        header.write_text(re.sub(r"25[01],.*\n", "", text), encoding="cp1252")
+        with header.with_suffix(".r64").open("r+b") as stream:
+            stream.truncate(rows * 32)
+    return folder / "run"
+
+
 def _written(path: Path, text: str) -> Path:
     path.write_text(text)
     return path
@@ -146,6 +186,9 @@ WORST = (
     Worst("program (KRL), 16 MiB", _program, read_program),
     Worst("robot description (URDF), 20 MiB", _urdf, read_urdf),
     Worst("mesh (STL), 24 MiB", _mesh, _loaded),
+    Worst(f"recorded table (CSV), {MOST_RECORDED:,} rows or 64 MiB", _recorded_table, read_recording),
+    Worst(f"capture of RSI (XML in gzip), {MAX_DOCUMENTS:,} documents", _capture, read_recording),
+    Worst("trace (KRC4), 1 GiB", _trace, read_recording),
 )
 
 

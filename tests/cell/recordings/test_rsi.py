@@ -51,6 +51,12 @@ def test_pieces_may_end_anywhere(tmp_path, monkeypatch):
         assert np.array_equal(read_recording(path).joints, whole.joints)
 
 
+def test_a_document_may_have_a_declaration_and_comments(tmp_path):
+    documents = [document(n).replace("<AIPos", "<!-- x --><AIPos") for n in range(20)]
+    found = read_recording(capture(tmp_path, ["<?xml version='1.0' encoding='UTF-8'?>" + each for each in documents]))
+    assert np.array_equal(found.joints, read_recording(capture(tmp_path, [document(n) for n in range(20)])).joints)
+
+
 def test_lost_cycles_are_counted_and_not_filled(tmp_path):
     documents = [document(n) for n in range(40) if n not in (5, 20, 21, 22)]
     found = read_recording(capture(tmp_path, documents))
@@ -97,6 +103,9 @@ BOMB = '<!DOCTYPE x [<!ENTITY a "aaaa">]>'
     ("documents", "says"),
     [
         ([BOMB + document(0)], "document 1: holds a document type"),
+        ([document(0).replace("<AIPos", "<!ELEMENT x ANY><AIPos")], "document 1: is not XML"),
+        ([document(0).replace("<AIPos", "&a;<AIPos")], "document 1: is not XML"),
+        (["<?xml version='1.0' encoding='utf-7'?>" + document(0)], "document 1: is not XML"),
         ([document(0), document(1).replace("<AIPos", "<AIPos <")], "document 2: is not XML"),
         ([document(0), document(1).replace("IPOC", "IPAC")], "document 2: no IPOC"),
         ([document(0), document(1, ipoc="x")], "document 2: the IPOC 'x'"),

@@ -6,11 +6,13 @@ Cycles that are missing by the controller's own counter (IPOC, ms) are counted a
 from __future__ import annotations
 
 import gzip
+import math
 import zlib
 from array import array
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import fromstring as plain_parser
 
 import numpy as np
 
@@ -51,13 +53,14 @@ def read_rsi(path: str | Path, mapping: Mapping = NO_MAPPING) -> Recording:
     source = str(path)
     counters: list[int] = []
     names: dict[str, int] = {}
+    known = _Names(mapping)
     rows: list[array[float]] = []
     repeated = 0
     for n, document in enumerate(documents(Path(path)), 1):
         where = f"{source}, document {n}"
         if n > MAX_DOCUMENTS:
             raise InputError(f"more than {MAX_DOCUMENTS:,} documents", where=where, accepted="a shorter capture")
-        counter, values = _document(document, mapping, where)
+        counter, values = _document(document, known, where)
         if counters and counter == counters[-1]:
             repeated += 1
             continue
@@ -67,10 +70,7 @@ def read_rsi(path: str | Path, mapping: Mapping = NO_MAPPING) -> Recording:
             )
         counters.append(counter)
         for name in values:
-            if name not in names:
-                if len(names) == MAX_NAMES:
-                    raise InputError(f"more than {MAX_NAMES} names", where=where, accepted=f"{MAX_NAMES} or less")
-                names[name] = len(names)
+            names.setdefault(name, len(names))
         if len(rows) * len(names) > MAX_VALUES:
             raise InputError(f"more than {MAX_VALUES:,} numbers", where=where, accepted="a shorter capture")
         rows.append(array("d", [values.get(name, np.nan) for name in names]))
@@ -144,35 +144,71 @@ def documents(path: Path) -> Iterator[bytes]:
             raise InputError("the last document does not end", where=str(path), accepted="documents that end in </Rob>")
 
 
-def _document(text: bytes, mapping: Mapping, where: str) -> tuple[int, dict[str, float]]:
+class _Names:
+    """The names of numbers, `AIPos.A1`; what is decided about a name is decided once."""
+
+    def __init__(self, mapping: Mapping) -> None:
+        self.mapping = mapping
+        self._decided: dict[tuple[str, str], tuple[str, bool] | None] = {}
+
+    def kept(self, tag: str, key: str, where: str) -> tuple[str, bool] | None:
+        """The name of an attribute, or of an element's text for the key "", and whether it must be a number.
+
+        None where it is of no use.
+
+        Raises:
+            InputError: too many names.
+        """
+        place = (tag, key)
+        if place not in self._decided:
+            if len(self._decided) == MAX_NAMES:
+                raise InputError(f"more than {MAX_NAMES} names", where=where, accepted=f"{MAX_NAMES} or less")
+            name = ".".join(one_line(part)[:80] for part in place if part)
+            needed = bool(_meaning(name)) or name in self.mapping.channels
+            self._decided[place] = (name, needed) if needed or not f"{name}.".startswith(_OTHERS) else None
+        return self._decided[place]
+
+
+def _document(text: bytes, names: _Names, where: str) -> tuple[int, dict[str, float]]:
     """The counter of a document, and its numbers by element and attribute, `AIPos.A1`."""
+    counter, values = None, {}
+    for element in _parsed(text, where):
+        tag, said = str(element.tag), (element.text or "").strip()
+        if tag == "IPOC":
+            counter = _counter(said, where)
+            continue
+        for key, value in (*element.attrib.items(), *((("", said),) if said else ())):
+            kept = names.kept(tag, key, where)
+            if kept is not None:
+                values[kept[0]] = _number(value)
+                if kept[1] and values[kept[0]] != values[kept[0]]:
+                    raise InputError(
+                        f"{value[:40]!r} is not a number", where=f"{where}, {kept[0]}", accepted="a finite number"
+                    )
+    if counter is None:
+        raise InputError("no IPOC", where=where, accepted="<IPOC>4208163634</IPOC> in every document")
+    return counter, values
+
+
+def _parsed(text: bytes, where: str) -> Any:
+    """The element of a document; a document type or entities are refused."""
+    from xml.etree.ElementTree import ParseError
+
     from defusedxml.common import DefusedXmlException
-    from defusedxml.ElementTree import ParseError, fromstring
+    from defusedxml.ElementTree import fromstring
 
     try:
-        root: Any = fromstring(text, forbid_dtd=True)
+        # in UTF-8, which it is without a declaration, no document type begins but with <!: then the plain parser,
+        # which is eight times as fast, is as safe
+        if text.startswith(b"<Rob") and b"<!" not in text and b"<?" not in text:
+            return plain_parser(text)
+        return fromstring(text, forbid_dtd=True)
     except DefusedXmlException:
         raise InputError(
             "holds a document type or entities, which are not read", where=where, accepted="plain XML"
         ) from None
     except (ParseError, ValueError, LookupError) as error:
         raise InputError(f"is not XML: {error}", where=where, accepted="an RSI document") from None
-    counter, values = None, {}
-    for element in root:
-        tag = one_line(str(element.tag))[:80]
-        if tag == "IPOC":
-            counter = _counter(element.text or "", where)
-        for key, value in element.attrib.items():
-            name = f"{tag}.{one_line(str(key))[:80]}"
-            if not name.startswith(_OTHERS) or name in mapping.channels or _meaning(name):
-                values[name] = _number(
-                    value, f"{where}, {name}", needed=bool(_meaning(name)) or name in mapping.channels
-                )
-        if element.text and element.text.strip() and tag != "IPOC" and not tag.startswith(_OTHERS):
-            values[tag] = _number(element.text, f"{where}, {tag}", needed=tag in mapping.channels)
-    if counter is None:
-        raise InputError("no IPOC", where=where, accepted="<IPOC>4208163634</IPOC> in every document")
-    return counter, values
 
 
 def _meaning(name: str) -> Meaning | None:
@@ -188,13 +224,10 @@ def _counter(text: str, where: str) -> int:
     return int(text)
 
 
-def _number(text: str, where: str, *, needed: bool) -> float:
+def _number(text: str) -> float:
+    """A finite number, or NaN: a text of the user's own."""
     try:
-        value = float(text) if "_" not in text else np.nan
+        value = float(text) if "_" not in text else math.nan
     except ValueError:
-        value = np.nan
-    if not np.isfinite(value):
-        if needed:
-            raise InputError(f"{text[:40]!r} is not a number", where=where, accepted="a finite number")
-        return float("nan")  # a text of the user's own
-    return value
+        return math.nan
+    return value if math.isfinite(value) else math.nan
