@@ -16,7 +16,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs/reference/extras.md"
 FOR_USERS = {
-    "figures": "pictures: `--figures`, `--figure`, `zerorev.figures`",
+    "figures": "pictures: `--figures`, `--figure`, `recordings compare`, `zerorev.figures`",
     "certify": "`check --certify`, `--tolerance` and `--proof`",
     "maps": "`map`, `map show`, `map compare`, `parameter-map`; pages with a slice to move (`--page`, with `figures`)",
     "cluster": "`--scheduler`: work on several machines; includes `maps`",
@@ -64,7 +64,11 @@ def needed(requirements: Iterable[str], known: dict[str, Distribution]) -> dict[
 def table() -> str:
     """One row per extra, after what the base weighs."""
     base = needed(_project()["dependencies"], {})
-    rows = [_row("", "`plan`, `check`, `export`, `depth`, `place`, `share`, `offset`, `rates`, `robots`", base)]
+    rows = [
+        _row(
+            "", "`plan`, `check`, `export`, `depth`, `place`, `share`, `offset`, `rates`, `recordings`, `robots`", base
+        )
+    ]
     for extra, words in FOR_USERS.items():
         every = needed(_extras()[extra], dict(base))
         rows.append(_row(f"`{extra}`", words, {name: every[name] for name in every if name not in base}))

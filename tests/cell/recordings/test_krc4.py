@@ -32,7 +32,15 @@ def by_hand(folder, name, columns, *, step=0.012, count=None, order="<", encodin
     rows = len(columns[0][4])
     high = "High -> Low" if order == ">" else "Low -> High"
     lines = ["DIAEXTENDED  {@:ENGLISH", "#BEGINGLOBALHEADER", "1,WINDOWS", f"112,{high}", "111,9.9E+34"]
-    lines += ["#ENDGLOBALHEADER", "#BEGINCHANNELHEADER", "200,Zeit", "201,Zeitkanal für alle", "202,s"]
+    lines += [
+        "102,A comment",
+        "of two lines",
+        "#ENDGLOBALHEADER",
+        "#BEGINCHANNELHEADER",
+        "200,Zeit",
+        "201,Zeitkanal für alle",
+        "202,s",
+    ]
     lines += ["210,IMPLIZIT", f"220,{count or rows}", f"240,{offset}", f"241,{step}", "#ENDCHANNELHEADER"]
     for n, (channel, unit, factor, shift, _) in enumerate(columns, 1):
         lines += ["#BEGINCHANNELHEADER", f"200,{channel}", f"202,{unit}", "210,EXPLIZIT", f"211,{name}.r64"]

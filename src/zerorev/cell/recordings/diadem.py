@@ -105,6 +105,8 @@ def read_header(path: Path) -> Header:
         elif line and within is not None:
             code, comma, value = line.partition(",")
             if not comma or not code.strip().isdigit():
+                if within is general:  # a comment of several lines
+                    continue
                 raise InputError(
                     "is not a code, a comma and a value", where=f"{source}, line {n}", accepted="e.g. 200,Istposition"
                 )
