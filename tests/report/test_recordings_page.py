@@ -15,7 +15,7 @@ from zerorev.cell.recordings.run import drilling_run
 from zerorev.cell.recordings.tip import PlannedHole
 from zerorev.model.plan import Motion
 from zerorev.motion.drilling import Drilling
-from zerorev.report.figures.recordings import Compared, deviations, joints, paths, profiles, torques
+from zerorev.report.figures.recordings import Compared, deviations, joints, paths, postures, profiles, torques
 from zerorev.report.figures.recordings_page import comparison_rows, recordings_page
 
 
@@ -82,12 +82,24 @@ def test_the_figures_draw_the_data(compared):
     assert torques(compared) is not None
 
 
+def test_postures_end_at_the_tip(compared):
+    run, hole = compared.optimised[0], compared.planned.drilling.hole
+    side, above = postures(compared).axes
+    for axes, y in ((side, 2), (above, 1)):
+        start, turn, end, stroke = axes.lines
+        for line, row in ((start, 0), (turn, int(np.argmin(np.abs(run.path)))), (end, -1)):
+            assert line.get_xydata()[-1] == pytest.approx(run.tip[row][[0, y]] * 1e3, abs=1e-6)
+            assert line.get_xydata()[0] == pytest.approx([0, 0], abs=1e-9)
+        assert stroke.get_xydata()[1] == pytest.approx(hole.target[[0, y]] * 1e3)
+    assert postures(Compared(compared.baseline, compared.optimised)) is None
+
+
 def test_the_page_stands_alone(compared):
     page = recordings_page(compared)
     assert set(re.findall(r'(?:src|href)="(.{5})', page)) == {"data:"}
     assert "http" not in re.sub(r'src="data:[^"]*"', "", page)
     assert "<script" not in page
-    assert page.count("<img") == 5
+    assert page.count("<img") == 6
     assert "different speeds, 40 and 30 mm/s" in page
     assert "Not recorded" not in page
     assert "Recorded runs of hole position 3" in page
@@ -103,7 +115,7 @@ def test_what_was_not_recorded_is_said(compared):
         recording = replace(run.recording, joints=None, joints_commanded=None, tcp=tips, source=name)
         only_tips.append((replace(run, recording=recording), found))
     page = recordings_page(Compared(*only_tips, compared.planned))
-    assert page.count("Not recorded") == 2
+    assert page.count("Not recorded") == 3
     assert page.count("<img") == 3
     assert "<script" not in page
     assert "&lt;script&gt;" in page  # names are not markup

@@ -16,7 +16,7 @@ PAGE = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>{title}</title>
 <style>body {{ font-family: sans-serif; margin: 1.5em auto; max-width: 1180px; color: #1a1a1a }} p {{ color: #5c5c5c }}
 img {{ max-width: 100% }} table {{ border-collapse: collapse }} th {{ text-align: left; font-weight: normal }}
-td, thead th {{ text-align: right; padding: 0.25em 1em; border-bottom: 1px solid #e4e4e4 }}
+td, th {{ padding: 0.25em 1em; border-bottom: 1px solid #e4e4e4 }} td, thead th {{ text-align: right }}
 </style>
 {script}</head><body>
 <h1>{title}</h1><p>{subtitle}</p>

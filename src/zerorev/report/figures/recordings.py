@@ -17,8 +17,9 @@ from zerorev.cell.recordings.tip import PlannedHole
 from zerorev.model._arrays import Array
 from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
+from zerorev.report.scene.skeleton import skeleton
 
-__all__ = ["Compared", "deviations", "joints", "paths", "profiles", "torques"]
+__all__ = ["Compared", "deviations", "joints", "paths", "postures", "profiles", "torques"]
 
 SAMPLES = 600
 MOST_POINTS = 4_000  # of a line: a picture is 1200 px wide
@@ -63,6 +64,41 @@ def joints(compared: Compared) -> Figure | None:
 def torques(compared: Compared) -> Figure | None:
     """Joint torques as logged against path distance (figs. 28, 34, 39, 43); None where none are recorded."""
     return _six(compared, "Joint torques as logged", "torque [Nm]", lambda run: run.recording.torque, planned=False)
+
+
+def postures(compared: Compared) -> Figure | None:
+    """The arm at the start, the turn and the end of the optimised run, from the side and from above (figs. 30, 31).
+
+    None without a plan, whose robot and tool are drawn, or without recorded joints.
+    """
+    run, planned = compared.optimised[0], compared.planned
+    recorded = _angles(run)
+    if planned is None or recorded is None:
+        return None
+    drilling = planned.drilling
+    rows = np.deg2rad(recorded[run.rows])
+    turn = int(np.argmin(np.abs(run.path)))
+    figure = style.headed_figure("Postures of the optimised run", compared.heading, 4.4)
+    places: list[tuple[str, int, Any, float]] = [
+        ("start", 0, SPARSE, 1.6), ("turn", turn, "-", 2.4), ("end", len(rows) - 1, (0, (1.2, 1.2)), 1.6),
+    ]  # fmt: skip
+    x = 0
+    for axes, y, name in zip(figure.subplots(1, 2), (2, 1), ("from the side", "from above"), strict=True):
+        style.bare_axes(axes)
+        axes.set_aspect("equal", adjustable="datalim")
+        for _, n, dashes, width in places:
+            arm = skeleton(drilling.robot, drilling.tool, rows[n]) * 1e3
+            axes.plot(arm[:, x], arm[:, y], color=OPTIMISED, linewidth=width, linestyle=dashes)
+        ends = (drilling.hole.target - drilling.hole.depth * drilling.hole.direction, drilling.hole.target)
+        axes.plot([end[x] * 1e3 for end in ends], [end[y] * 1e3 for end in ends], color=style.INK, linewidth=3.0)
+        axes.set_title(name, loc="left", size=9.5, color=style.MUTED)
+        style.label(axes, x="X [mm]", y="YZ"[y - 1] + " [mm]")
+    legend = [
+        Line2D([], [], color=OPTIMISED, linewidth=width, linestyle=dashes, label=label)
+        for label, _, dashes, width in places
+    ]
+    style.legend_below(figure, [*legend, Line2D([], [], color=style.INK, linewidth=3.0, label="stroke")], 4)
+    return figure
 
 
 def paths(compared: Compared) -> Figure:

@@ -10,7 +10,7 @@ import numpy as np
 from zerorev.cell.recordings.metrics import Metrics
 from zerorev.cell.recordings.run import DrillingRun
 from zerorev.report.figures.page import html_page, picture
-from zerorev.report.figures.recordings import Compared, deviations, joints, paths, profiles, torques
+from zerorev.report.figures.recordings import Compared, deviations, joints, paths, postures, profiles, torques
 from zerorev.report.figures.style import png, signed
 from zerorev.report.words.recordings import ALIGNED, findings_of
 
@@ -29,6 +29,8 @@ def recordings_page(compared: Compared) -> str:
     """The page as HTML; the same recordings make the same bytes."""
     sections = [("Figures", _feeds(compared) + ENCODERS, _table(comparison_rows(compared)))]
     for head, hint, figure in (
+        ("Postures", "Thesis Figures 30, 31, 37, 41. The plan's robot in the joints that were recorded.",
+         postures(compared)),
         ("Joint angles", "Thesis Figures 32, 38, 42. Path distance is 0 at the turn.", joints(compared)),
         ("Path distance", "Thesis Figure 33: both runs are compared by it, never by time.", paths(compared)),
         ("Joint torques", "Thesis Figures 28, 34, 39, 43: as the controller logs them.", torques(compared)),
@@ -37,7 +39,8 @@ def recordings_page(compared: Compared) -> str:
         ("Distance from the mean", "Thesis Figure 36.", deviations(compared)),
     ):  # fmt: skip
         if figure is None:
-            sections.append((head, "Not recorded.", ""))
+            unplanned = head == "Postures" and compared.planned is None
+            sections.append((head, "Not known without a plan." if unplanned else "Not recorded.", ""))
         else:
             sections.append((head, hint, picture(png(figure), head)))
     sections.append(("Findings", "", _findings(compared)))
