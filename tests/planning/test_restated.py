@@ -250,14 +250,16 @@ def one_line(data: dict[str, Any], *words: str) -> None:
 
 def test_a_warning_that_is_removed_is_missed(files):
     data = files("threshold")
-    assert [finding["kind"] for finding in data["holes"][0]["findings"]] == ["threshold"]
-    data["holes"][0]["findings"] = []
+    findings = data["holes"][0]["findings"]
+    assert findings[0]["kind"] == "threshold"
+    del findings[0]
     one_line(data, "findings: stated none, found warning threshold")
 
 
 def test_a_finding_that_nothing_gives_rise_to(files):
     data = files("straight")
-    data["holes"][0]["findings"] = [{"level": "info", "kind": "blend", "message": "all is well", "hole": "first"}]
+    strange = {"level": "info", "kind": "blend", "message": "all is well", "hole": "first"}
+    data["holes"][0]["findings"].insert(0, strange)
     one_line(data, "findings[0]: stated info blend", "found none")
 
 
@@ -337,11 +339,16 @@ def edited_file(files, tmp_path):
     return path
 
 
+def another_baseline(data):
+    stated = data["holes"][0]["baseline"]["travel_deg"]
+    return f"baseline.travel_deg: stated {stated:.6g}, found {stated - 0.5:.6g}"
+
+
 def test_the_command_says_it_and_ends_with_1(edited_file, capsys):
     assert main(["check", str(edited_file)]) == cli.FOUND
     out = capsys.readouterr().out
     line = next(line for line in out.splitlines() if line.startswith("error"))
-    assert "verification hole first: baseline.travel_deg: stated 52.4411, found 51.9411" in line
+    assert f"verification hole first: {another_baseline(json.loads(edited_file.read_text()))}" in line
     assert "FAILED" in out
 
 
@@ -364,16 +371,18 @@ def test_what_is_said_of_placements_is_not_shown_either(edited_file, files, caps
     capsys.readouterr()
     assert main(["check", str(edited_file), "--json"]) == cli.FINE
     (hole,) = json.loads(capsys.readouterr().out)["holes"]
-    assert (hole["certified_within"], hole["findings"]) == (None, [])
+    assert hole["certified_within"] is None
+    assert "tolerance" not in {finding["kind"] for finding in hole["findings"]}
 
 
 def test_a_file_that_is_marked_and_mended(edited_file, files, capsys):
     """The certificate is written into a wrong file, too, with what is wrong; none of that stays once it is mended."""
     pytest.importorskip("flint")
+    expected = another_baseline(json.loads(edited_file.read_text()))
     assert main(["check", "--certify", str(edited_file)]) == cli.FOUND
     data = json.loads(edited_file.read_text())
     assert data["holes"][0]["verified"]["passed"] is False
-    assert data["holes"][0]["verified"]["failures"] == ["baseline.travel_deg: stated 52.4411, found 51.9411"]
+    assert data["holes"][0]["verified"]["failures"] == [expected]
     assert main(["check", str(edited_file)]) == cli.FOUND
     data["holes"][0]["baseline"] = files("straight")["holes"][0]["baseline"]
     edited_file.write_text(json.dumps(data))

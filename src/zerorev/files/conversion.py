@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.schema import FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm
+from zerorev.files.schema import DynamicsForm, FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
+from zerorev.model.dynamics import Dynamics, Link, Load
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
@@ -46,7 +47,31 @@ def robot_from(form: RobotForm, **sources: Any) -> Robot:
     arm = ArmGeometry(**lengths, sign=six(joints.sign), offset=six(rad(joints.offset_deg)))
     limits = JointLimits(rad(joints.lower_deg), rad(joints.upper_deg), rad(joints.speed_deg_s))
     a, b, c, d, e, f = joints.names
-    return Robot(form.name, arm, limits, (a, b, c, d, e, f), form.manufacturer, form.model, **sources)
+    words = form.manufacturer, form.model
+    return Robot(form.name, arm, limits, (a, b, c, d, e, f), *words, **sources, dynamics=_dynamics_from(form.dynamics))
+
+
+def _dynamics_from(form: DynamicsForm | None) -> Dynamics | None:
+    if form is None:
+        return None
+    links = []
+    for number, link in enumerate(form.links):
+        with inside(f"dynamics.links[{number}]"):
+            links.append(Link(link.mass_kg, m(link.com_mm), _tensor(link.inertia_kgm2), frame_from(link.frame)))
+    one, two, three, four, five, six_ = links
+    limit = None if form.effort_limit_nm is None else np.array(form.effort_limit_nm)
+    with inside("dynamics"):
+        return Dynamics((one, two, three, four, five, six_), form.payload_kg, limit, form.source)
+
+
+def _tensor(six_numbers: list[float]) -> Array:
+    """The symmetric (3, 3) of xx, xy, xz, yy, yz, zz."""
+    xx, xy, xz, yy, yz, zz = six_numbers
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _six_numbers(tensor: Array) -> Array:
+    return tensor[[0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
 
 
 def robot_data(robot: Robot) -> dict[str, Any]:
@@ -64,20 +89,60 @@ def robot_data(robot: Robot) -> dict[str, Any]:
                 "speed_deg_s": deg(limits.speed),
             },
         }
+        | ({} if robot.dynamics is None else {"dynamics": _dynamics_data(robot.dynamics)})
     )
     words = {"name": robot.name, "manufacturer": robot.manufacturer, "model": robot.model}
     return words | numbers | {"sha256": _fingerprint(numbers)}
 
 
+def _dynamics_data(dynamics: Dynamics) -> dict[str, Any]:
+    links = [
+        {
+            "mass_kg": link.mass,
+            "com_mm": mm(link.com),
+            "inertia_kgm2": _six_numbers(link.inertia),
+            "frame": frame_data(link.T_base_link),
+        }
+        for link in dynamics.links
+    ]
+    return {
+        "links": links,
+        "payload_kg": dynamics.payload,
+        "effort_limit_nm": dynamics.effort_limit,
+        "source": dynamics.source,
+    }
+
+
 def tool_from(form: ToolForm, **sources: Any) -> Tool:
-    """The tool of a tool file, a job or a plan file; `sources` as `Tool` has them."""
-    return Tool(form.name, transform(rotation_rpy(*rad(form.rpy_deg)), m(form.tcp_mm)), **sources)
+    """The tool of a tool file, a job or a plan file; `sources` as `Tool` has them.
+
+    Raises:
+        InputError: a mass without its centre, or the other way round; a mass that no body has.
+    """
+    with inside(f"tool {form.name}"):
+        load = _load_from(form)
+    return Tool(form.name, transform(rotation_rpy(*rad(form.rpy_deg)), m(form.tcp_mm)), **sources, load=load)
+
+
+def _load_from(form: ToolForm) -> Load | None:
+    given = {"mass_kg": form.mass_kg, "com_mm": form.com_mm, "inertia_kgm2": form.inertia_kgm2}
+    if all(value is None for value in given.values()):
+        return None
+    for key in ("mass_kg", "com_mm"):
+        if given[key] is None:
+            raise InputError("is missing", where=key, accepted="mass_kg and com_mm together, or neither")
+    assert form.mass_kg is not None
+    assert form.com_mm is not None
+    return Load(form.mass_kg, m(form.com_mm), _tensor(form.inertia_kgm2 or [0.0] * 6))
 
 
 def tool_data(tool: Tool) -> dict[str, Any]:
     """The tool as a plan file holds it, with the fingerprint of its numbers."""
     T = tool.T_flange_tcp
-    numbers: dict[str, Any] = plain({"tcp_mm": mm(T[:3, 3]), "rpy_deg": deg(rpy_of(T[:3, :3]))})
+    weight: dict[str, Any] = {}
+    if (load := tool.load) is not None:
+        weight = {"mass_kg": load.mass, "com_mm": mm(load.com), "inertia_kgm2": _six_numbers(load.inertia)}
+    numbers: dict[str, Any] = plain({"tcp_mm": mm(T[:3, 3]), "rpy_deg": deg(rpy_of(T[:3, :3]))} | weight)
     return {"name": tool.name} | numbers | {"sha256": _fingerprint(numbers)}
 
 

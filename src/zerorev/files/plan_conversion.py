@@ -18,7 +18,7 @@ from zerorev.files.conversion import (
     tool_from,
 )
 from zerorev.files.plan_data import MOTION, SCORE, twist_spread
-from zerorev.files.plan_schema import DepthFile, DepthHole, GivenForm, JointsDegForm, PlanFile, PlanHole
+from zerorev.files.plan_schema import DepthFile, DepthHole, GivenForm, JointsDegForm, LostMotionForm, PlanFile, PlanHole
 from zerorev.files.stated_forms import Form, agree, noun_from
 from zerorev.files.units import m, rad, rad_per_m
 from zerorev.files.validation import inside
@@ -31,6 +31,8 @@ from zerorev.model.plan import (
     Certificate,
     Event,
     HolePlan,
+    LostMotion,
+    LostMotionEvent,
     Motion,
     Optimality,
     Plan,
@@ -127,6 +129,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             certified_within=_noun_from(Within, form.certified_within),
             measures=_noun_from(Measures, form.criteria),
             optimality=_noun_from(Optimality, form.optimality),
+            lost_motion=_lost_motion_from(form.lost_motion),
             critical_rates=_critical_from(form),
         )
 
@@ -150,6 +153,10 @@ def _score_from(form: PlanHole) -> Score | None:
     if len(undefined) > 1:
         raise InputError("some are null", where=", ".join(SCORE), accepted="all or none of them null")
     return None if form.events is None else noun_from(Score, form, events=_nouns_from(Event, form.events))
+
+
+def _lost_motion_from(form: LostMotionForm | None) -> LostMotion | None:
+    return None if form is None else noun_from(LostMotion, form, events=_nouns_from(LostMotionEvent, form.events))
 
 
 def _critical_from(form: PlanHole) -> Array | None:

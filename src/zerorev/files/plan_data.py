@@ -11,7 +11,7 @@ from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
-from zerorev.model.plan import HolePlan, Motion, Plan, Score, Strokes
+from zerorev.model.plan import HolePlan, LostMotion, Motion, Plan, Score, Strokes
 from zerorev.model.stated import stated
 
 __all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
@@ -78,12 +78,17 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "certificate": _data(answer.certificate),
         "certified_within": _data(answer.certified_within),
         "criteria": _data(answer.measures),
+        "lost_motion": _lost_motion_data(answer.lost_motion),
         "findings": [data_of(finding) for finding in answer.findings],
     }
 
 
 def _data(noun: object) -> dict[str, Any] | None:
     return None if noun is None else data_of(noun)
+
+
+def _lost_motion_data(lost: LostMotion | None) -> dict[str, Any] | None:
+    return None if lost is None else data_of(lost) | {"events": [data_of(event) for event in lost.events]}
 
 
 def _critical_data(kappa: Array | None) -> dict[str, Any]:

@@ -122,6 +122,14 @@ HOLE_FIELDS: dict[str, Field] = {
     "certified_within": Field("not recomputed"),
     "criteria": Field("figure", optional=True),
     **{f"criteria.{each.path[-1]}": _criterion(each) for each in CRITERIA.values()},
+    "lost_motion": Field("figure", optional=True),
+    "lost_motion.at_tip_mm": Field("figure", DIGITS, 1e-9),
+    "lost_motion.twin_at_tip_mm": Field("figure", DIGITS, 1e-9),
+    "lost_motion.events": _EXACT,
+    "lost_motion.events.joint": _EXACT,
+    "lost_motion.events.leg": _EXACT,
+    "lost_motion.events.standoff_mm": Field("figure", DIGITS, 1e-7),
+    "lost_motion.events.friction": _EXACT,
     "findings": Field("finding"),
 }
 """Likewise of a hole, by the path within it; that of a depth file has its own below `plan`."""

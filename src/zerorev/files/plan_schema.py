@@ -25,7 +25,18 @@ from zerorev.files.schema import (
 from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
 from zerorev.model.finding import Finding
 from zerorev.model.measures import Measures
-from zerorev.model.plan import Baseline, Certificate, Event, HolePlan, Optimality, Score, Verification, Within
+from zerorev.model.plan import (
+    Baseline,
+    Certificate,
+    Event,
+    HolePlan,
+    LostMotion,
+    LostMotionEvent,
+    Optimality,
+    Score,
+    Verification,
+    Within,
+)
 
 __all__ = [
     "BaselineForm",
@@ -36,6 +47,8 @@ __all__ = [
     "FindingForm",
     "GivenForm",
     "JointsDegForm",
+    "LostMotionEventForm",
+    "LostMotionForm",
     "PlanFile",
     "PlanHead",
     "PlanHole",
@@ -95,6 +108,20 @@ class JointsDegForm(Form):
 @keys_of(Optimality, needed=True)
 class OptimalityForm(Form):
     """How much better a motion of straight legs could be, by a global search that bounds."""
+
+
+@keys_of(LostMotionEvent, needed=True)
+class LostMotionEventForm(Form):
+    """Where the load of a joint changes its sign without a reversal."""
+
+
+@keys_of(LostMotion, needed=True)
+class LostMotionForm(Form):
+    """The lost motion that is predicted at the tip, with guessed drives."""
+
+    events: Many[LostMotionEventForm] = Field(
+        description="a list of joint, leg, standoff_mm and friction: where loads change their sign without a reversal"
+    )
 
 
 @keys_of(Baseline, needed=True)
@@ -182,6 +209,11 @@ class PlanHole(Form):
     )
     criteria: CriteriaForm | None = Field(
         default=None, description="a mapping of what the criteria measure of the motion; or null: it was not measured"
+    )
+    lost_motion: LostMotionForm | None = Field(
+        default=None,
+        description="a mapping of what the gears are predicted to add at the tip, and where loads change their sign; "
+        "or null: the robot's masses are not known",
     )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 

@@ -19,6 +19,7 @@ __all__ = [
     "MOST_HOLES",
     "Angle",
     "Depth",
+    "DynamicsForm",
     "Form",
     "FrameForm",
     "HoleForm",
@@ -70,12 +71,23 @@ StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=MOST_BREAKP
 SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
 SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 Branch = Annotated[int, Field(ge=0, le=7)]
+Inertia = Annotated[list[Annotated[float, Field(ge=-1e9, le=1e9)]], Field(min_length=6, max_length=6)]
+INERTIA = "six numbers [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass"
 
 
 # --- robot and tool ---------------------------------------------------------------------------------------------------
 
 
 SOURCES = "a mapping of text to text: where the numbers come from"
+
+
+class FrameForm(Form):
+    """A frame in the base frame."""
+
+    xyz_mm: PlaceMm = Field(default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, base frame")
+    rpy_deg: AnglesDeg = Field(
+        default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
+    )
 
 
 class GeometryForm(Form):
@@ -103,6 +115,31 @@ class JointsForm(Form):
     speed_deg_s: SixPositive = Field(description="six numbers above 0 [deg/s]: the greatest joint speeds")
 
 
+class LinkForm(Form):
+    """A link that moves, as a rigid body."""
+
+    mass_kg: Positive = Field(description="a number above 0 [kg]")
+    com_mm: PlaceMm = Field(description="three numbers [mm]: the centre of mass in the link's frame")
+    inertia_kgm2: Inertia = Field(description=f"{INERTIA}; axes of the link's frame")
+    frame: FrameForm = Field(
+        default=FrameForm(),
+        description="a mapping of xyz_mm and rpy_deg: the link's frame in the base frame where all joints show 0",
+    )
+
+
+class DynamicsForm(Form):
+    """What the links of an arm weigh."""
+
+    links: Annotated[list[LinkForm], Field(min_length=6, max_length=6)] = Field(
+        description="a list of six mappings of mass_kg, com_mm, inertia_kgm2 and frame: the links that move, in order"
+    )
+    payload_kg: Positive = Field(description="a number above 0 [kg]: the rated load, from which the drives are guessed")
+    effort_limit_nm: SixPositive | None = Field(
+        default=None, description="six numbers above 0 [N m]: the greatest torque of each joint"
+    )
+    source: Words = Field(default="", description="text: where the numbers come from")
+
+
 class RobotForm(Form):
     """The numbers of a robot."""
 
@@ -112,6 +149,9 @@ class RobotForm(Form):
     geometry_mm: GeometryForm = Field(description="a mapping of the seven lengths a1, a2, b, c1, c2, c3, c4 [mm]")
     joints: JointsForm = Field(
         description="a mapping of names, sign, offset_deg, lower_deg, upper_deg and speed_deg_s, six entries each"
+    )
+    dynamics: DynamicsForm | None = Field(
+        default=None, description="a mapping of links, payload_kg, effort_limit_nm and source: what the arm weighs"
     )
 
 
@@ -134,6 +174,13 @@ class ToolForm(Form):
     rpy_deg: AnglesDeg = Field(
         description="three numbers [deg]: roll, pitch, yaw of the TCP; R = Rz(yaw) Ry(pitch) Rx(roll)"
     )
+    mass_kg: Positive | None = Field(default=None, description="a number above 0 [kg]: what the tool weighs")
+    com_mm: PlaceMm | None = Field(
+        default=None, description="three numbers [mm]: its centre of mass in the flange frame, beside mass_kg"
+    )
+    inertia_kgm2: Inertia | None = Field(
+        default=None, description=f"{INERTIA}; axes of the flange frame; left out, the mass is taken for a point"
+    )
 
 
 class ToolFile(ToolForm):
@@ -147,15 +194,6 @@ class ToolFile(ToolForm):
 
 
 # --- job --------------------------------------------------------------------------------------------------------------
-
-
-class FrameForm(Form):
-    """A frame in the base frame."""
-
-    xyz_mm: PlaceMm = Field(default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, base frame")
-    rpy_deg: AnglesDeg = Field(
-        default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
-    )
 
 
 @keys_of(Settings)

@@ -151,6 +151,7 @@ def _word_or_weights(word: Stated, weighed: Weighed) -> tuple[Any, Any]:
     weights: dict[str, Any] = {}
     for each in criteria(weighed.of).values():
         needs = "; needs joint_stiffness_nm_per_rad" if each.needs_stiffness else ""
+        needs += "; needs dynamics in the robot file" if each.needs_dynamics else ""
         weights[each.name] = (
             Weight,
             Field(default=0.0, description=f"a number, 0 or more: weight of {each.weighs}{needs}"),

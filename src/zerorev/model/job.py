@@ -9,11 +9,27 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
 from zerorev.model.hole import Hole
+from zerorev.model.measures import CRITERIA
 from zerorev.model.robot import Robot
 from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 
-__all__ = ["Job", "Settings"]
+__all__ = ["Job", "Settings", "check_masses"]
+
+
+def check_masses(robot: Robot, settings: Settings) -> None:
+    """Hold a criterion that takes the masses of the robot to its having them.
+
+    Raises:
+        InputError: a criterion weighs that the robot has no masses for.
+    """
+    for name, _ in settings.weights:
+        if CRITERIA[name].needs_dynamics and robot.dynamics is None:
+            raise InputError(
+                f"{name} needs the masses of the robot {robot.name}, which its file does not have",
+                where="objective",
+                accepted="dynamics in the robot file: links, payload_kg",
+            )
 
 
 @dataclass(frozen=True)
@@ -52,3 +68,4 @@ class Job:
             if hole.id in seen:
                 raise InputError(f"the id '{hole.id}' is used twice", where="holes", accepted="ids that differ")
             seen.add(hole.id)
+        check_masses(self.robot, self.settings)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 from zerorev.model.stated import stated, with_attributes
 from zerorev.model.stated_figures import Figure
-from zerorev.model.units import DEG, DEG_PER_MM, RPM, UM_PER_N
+from zerorev.model.units import DEG, DEG_PER_MM, MM, RPM, UM_PER_N
 
 if TYPE_CHECKING:
     from zerorev.model._arrays import Array
@@ -31,6 +31,7 @@ class Criterion(Figure):
         scale: the figure [SI] that costs 1, or, where more is better, that costs nothing.
         more_is_better: whether the cost is 1 less the figure's share of the scale.
         needs_stiffness: whether it takes the stiffness of the joints.
+        needs_dynamics: whether it takes the masses of the robot.
         cost: the cost in words, for the table.
         absolute: how far the figure of a file may be from the one that the check computes, in the unit outside.
     """
@@ -40,6 +41,7 @@ class Criterion(Figure):
     scale: float = 1.0
     more_is_better: bool = False
     needs_stiffness: bool = False
+    needs_dynamics: bool = False
     cost: str
     absolute: float = 1e-12
 
@@ -147,6 +149,21 @@ class Measures(Generic[V]):
             label="nearness to singularity",
             more_is_better=True,
             cost="1 − least manipulability; 1 where the arm is singular",
+        ),
+    ]
+    lost_motion: Annotated[
+        V,
+        Criterion(
+            "greatest deviation of the tip across the axis that the gears are predicted to cause",
+            MM,
+            none="the robot's masses are not known",
+            weighs="the predicted lost motion at the tip",
+            label="lost motion",
+            scale=50e-6,
+            needs_dynamics=True,
+            added=True,
+            cost="predicted lost motion at the tip, in 50 µm (theory §9)",
+            absolute=1e-9,
         ),
     ]
 

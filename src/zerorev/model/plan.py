@@ -27,6 +27,8 @@ __all__ = [
     "Certificate",
     "Event",
     "HolePlan",
+    "LostMotion",
+    "LostMotionEvent",
     "Motion",
     "Optimality",
     "Plan",
@@ -57,6 +59,34 @@ class Event:
     joint: Annotated[int, Whole(least=1, to=6)]
     leg: Annotated[LegName, Choice(words={"plunge": "", "target": "at the corner", "retract": ""})]
     standoff: Annotated[float, Figure("where", MM)]
+
+
+@dataclass(frozen=True)
+class LostMotionEvent:
+    """Where the load of a joint changes its sign without a reversal: its gear crosses to the other flank."""
+
+    joint: Annotated[int, Whole(least=1, to=6)]
+    leg: Annotated[LegName, Choice(words={"plunge": "", "target": "at the corner", "retract": ""})]
+    standoff: Annotated[float, Figure("where", MM)]
+    friction: Annotated[float, Figure("share of the nominal dry friction that lies behind the gear then", least=0)]
+
+
+@dataclass(frozen=True)
+class LostMotion:
+    """What the gears are predicted to add to a motion at the tip, with guessed drives: to compare motions by.
+
+    Attributes:
+        events: where loads change their sign without a reversal, in order of motion.
+    """
+
+    at_tip: Annotated[
+        float, Figure("greatest deviation across the drill axis, half a stroke about the turn", MM, least=0)
+    ]
+    twin_at_tip: Annotated[
+        float | None,
+        Figure("the same of the motion with its legs swapped", MM, least=0, null=None, none="it cannot be run"),
+    ]
+    events: tuple[LostMotionEvent, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -227,6 +257,7 @@ class HolePlan(Shown):
         critical_rates: twist rates at which the joints stand still at the motion's corner [rad/m], shape (6,); not
             finite where a joint has none; None without a motion.
         certified_within: every placement error of the part within these bounds is certified, too; None until proven.
+        lost_motion: what the gears are predicted to add at the tip; None where the robot's masses are not known.
     """
 
     hole: Hole
@@ -259,6 +290,7 @@ class HolePlan(Shown):
     optimality: Optimality | None = None
     critical_rates: Array | None = None
     certified_within: Within | None = None
+    lost_motion: LostMotion | None = None
 
 
 @dataclass(frozen=True)
@@ -291,5 +323,17 @@ class Plan(Shown):
         return self.findings + tuple(finding for hole in self.holes for finding in hole.findings)
 
 
-for _noun in (Finding, Event, Score, Verification, Baseline, Certificate, Within, Optimality, HolePlan):
+for _noun in (
+    Finding,
+    Event,
+    LostMotionEvent,
+    LostMotion,
+    Score,
+    Verification,
+    Baseline,
+    Certificate,
+    Within,
+    Optimality,
+    HolePlan,
+):
     _noun.__doc__ = with_attributes(_noun)

@@ -19,6 +19,8 @@ def resized(
 ) -> tuple[Robot, Tool, Hole, Settings]:
     """Robot, tool, hole and settings at another size; every motion does the same to the joints.
 
+    Masses are left out: what they do depends on the size.
+
     With a power of two as the factor no digit changes, so that an answer comes back exactly.
 
     Args:
@@ -32,8 +34,8 @@ def resized(
     T[:3, 3] *= factor
     a1, a2, b, c1, c2, c3, c4 = (length * factor for length in arm[:7])
     return (
-        replace(robot, arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4)),
-        replace(tool, T_flange_tcp=T),
+        replace(robot, arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4), dynamics=None),
+        replace(tool, T_flange_tcp=T, load=None),
         replace(
             hole,
             target=hole.target * factor,

@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
+from zerorev.model.dynamics import Dynamics
 
 __all__ = ["NIL_RATE", "ArmGeometry", "JointLimits", "Robot"]
 
@@ -74,6 +75,9 @@ class Robot:
         manufacturer: who makes it, e.g. KUKA.
         model: the maker's name of it.
         sources: where each group of numbers comes from.
+        second_sources: what others say of them.
+        caveats: what to know before trusting them.
+        dynamics: what the links weigh, or None where that is not known.
     """
 
     name: str
@@ -85,6 +89,7 @@ class Robot:
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     second_sources: tuple[str, ...] = field(default=(), compare=False)
     caveats: tuple[str, ...] = field(default=(), compare=False)
+    dynamics: Dynamics | None = None
 
     @property
     def reach(self) -> float:

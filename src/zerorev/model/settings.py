@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from zerorev.errors import InputError
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
-from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NM_PER_RAD, Unit
+from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
 
 __all__ = ["Settings", "Weights"]
 
@@ -162,6 +162,16 @@ class Settings:
             label="spindle",
         ),
     ] = None
+    thrust: Annotated[
+        float,
+        Number(
+            "thrust of the drill while it plunges; 0: none, or one that a foot on the part takes",
+            NEWTON,
+            note="Counts in the predicted lost motion and in the virtual cell (theory §9)",
+            least=0,
+            label="thrust",
+        ),
+    ] = 0.0
     proof_boxes: Annotated[
         int,
         Whole(

@@ -8,6 +8,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid, rotation_rpy, transform
+from zerorev.model.dynamics import Load
 
 __all__ = ["Tool"]
 
@@ -21,11 +22,13 @@ class Tool:
         T_flange_tcp: tool centre point in the flange frame, shape (4, 4), translation [m]; Z_tcp points against the
             plunge.
         sources: where the numbers come from.
+        load: what it weighs, or None where that is not known.
     """
 
     name: str
     T_flange_tcp: Array
     sources: dict[str, str] = field(default_factory=dict, compare=False)
+    load: Load | None = None
 
     def __post_init__(self) -> None:
         """Check that the transform is a rigid motion."""

@@ -23,6 +23,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, steady_rates
 from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.motion.kinematics import jacobian
+from zerorev.motion.loads import lost_motion
 
 __all__ = [
     "AT_POSES",
@@ -125,6 +126,7 @@ def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> M
     assert score is not None
     profile, limits, steady = motion.profile, drilling.robot.limits, steady_rates(score, settings)
     plunge = slice(profile.corner)
+    lost = lost_motion(drilling, profile, motion.branch, settings.thrust)
     points = profile.at(sample_distances(profile, SAMPLES))
     poses = Poses(drilling, settings, joints_along(drilling, motion.branch, *points))
     return Measures(
@@ -133,6 +135,7 @@ def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> M
         plunge_rotation=float(np.abs(np.diff(profile.psi)[plunge]).sum()),
         tool_speed_change=float(np.abs(profile.twist_rate[plunge]).max() * settings.feed_plunge),
         limit_distance=float((2 * score.limit_distance / (limits.upper - limits.lower)).min()),
+        lost_motion=np.nan if lost is None else lost,
         **{name: float(figure) for name, figure in worst(poses).items()},
     )
 

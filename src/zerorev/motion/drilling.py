@@ -9,12 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels.arm import flip_sign
+from zerorev.kernels.dynamics import Bodies
 from zerorev.kernels.field import rates
 from zerorev.kernels.layout import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.motion.bodies import bodies_of
 from zerorev.motion.kinematics import inverse, tcp_pose, wrist_in_tcp, wrist_offset
 
 __all__ = ["Drilling", "joint_rates"]
@@ -45,6 +47,11 @@ class Drilling:
             R_tcp_flange=tuple(self.tool.T_flange_tcp[:3, :3].T.ravel().tolist()),
             wrist=tuple(wrist_in_tcp(self.robot, self.tool).tolist()),
         )
+
+    @cached_property
+    def bodies(self) -> Bodies | None:
+        """Links and tool as rigid bodies; None where the masses of the robot are not known."""
+        return bodies_of(self.robot, self.tool)
 
     @property
     def wrist_offset(self) -> float:

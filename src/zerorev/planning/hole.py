@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -11,7 +12,7 @@ from zerorev.kernels._ahead import expect
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
-from zerorev.model.job import Settings
+from zerorev.model.job import Settings, check_masses
 from zerorev.model.plan import Baseline, HolePlan, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
@@ -21,12 +22,15 @@ from zerorev.motion.critical import critical
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
+from zerorev.motion.loads import lost_motion_of
+from zerorev.planning.load_findings import load_findings
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
 from zerorev.search.deepest import Deepest
 from zerorev.search.exact import can_run
 from zerorev.search.optimum import LEAST_STROKE, alternatives, deepest_as_drilled, optimum, too_short
 from zerorev.search.rank import Candidate, Order
+from zerorev.search.twins import gentlest_first
 from zerorev.verify.check import verify_hole
 
 __all__ = ["lever_findings", "motion_findings", "plan", "plan_deepest"]
@@ -47,19 +51,24 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         hole: what to drill; a hole with a `profile` is evaluated, not searched.
         settings: how; None for the defaults.
 
+    Raises:
+        InputError: a criterion weighs that the robot has no masses for.
+
     Returns:
         the motion with its score, the baseline with constant spin, the outcome of the check, and findings. A hole that
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
     settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
     expect(f"plan with {settings.legs} legs")
+    check_masses(robot, settings)
     if too_short(drilling):
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
         found = optimum(drilling, settings)
-        answer = _planned(drilling, settings, found.motion)
+        best = () if found.motion is None else gentlest_first(drilling, settings, found.motion)
+        answer = _planned(drilling, settings, *best)
         if found.optimality is not None:
-            answer = _with_optimality(robot, settings, answer, found.motion, found.optimality)
+            answer = _with_optimality(drilling, settings, answer, best, found.optimality)
         return _with_deepest(answer, settings, found.deepest)
     answer = _evaluated(drilling, settings, hole.profile)
     return _with_deepest(answer, settings, deepest_as_drilled(drilling, settings))
@@ -82,6 +91,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     """
     settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
     expect(f"deepest stroke with {settings.legs} legs")
+    check_masses(robot, settings)
     deepest = deepest_as_drilled(drilling, settings)
     drilling = drilling.without_motion()
     hole = drilling.hole
@@ -93,7 +103,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     for share in SHARES:
         shorter = drilling.deep(share * deepest.depth)
         cut = Order(shorter, settings).candidate(cut_short(deepest.profile, shorter.hole.depth), deepest.branch)
-        answer = _answered(shorter, settings, "planned", cut)
+        answer = _passing(shorter, settings, () if cut is None else gentlest_first(shorter, settings, cut))
         if answer.verified is not None and answer.verified.passed:
             found = () if why is None else (_rejected("a deeper motion without a reversal", why, hole),)
             answer = replace(answer, findings=(*answer.findings, *found))
@@ -109,9 +119,25 @@ def _rejected(what: str, why: str, hole: Hole) -> Finding:
     return Finding("warning", "rejected", f"{what} was found, but does not pass the check: {why}", hole.id)
 
 
-def _planned(drilling: Drilling, settings: Settings, best: Candidate | None) -> HolePlan:
-    """The answer that the best motion makes; where it does not pass the check, the best one found that does."""
-    answer = _answered(drilling, settings, "planned", best)
+def _passing(drilling: Drilling, settings: Settings, motions: Sequence[Candidate]) -> HolePlan:
+    """The answer that the first of some motions makes which passes the check, or else the last one."""
+    answer = None
+    for motion in motions:
+        answer = _answered(drilling, settings, "planned", motion)
+        if answer.verified is not None and answer.verified.passed:
+            break
+    return answer or _answered(drilling, settings, "planned", None)
+
+
+def _planned(drilling: Drilling, settings: Settings, *best: Candidate) -> HolePlan:
+    """The answer that the best motions make; where none passes the check, the best one found that does.
+
+    Args:
+        drilling: what is drilled.
+        settings: how.
+        best: motions that cost the same, the one to be preferred first.
+    """
+    answer = _passing(drilling, settings, best)
     if answer.verified is None or answer.verified.passed:
         return answer
     why = answer.verified.failures[0]
@@ -145,10 +171,11 @@ def _answered(
         measures=measure(drilling, best.evaluation, settings),
         baseline=_baseline(drilling, best.profile, best.branch, settings),
         critical_rates=_critical_rates(drilling, best.profile, best.branch),
+        lost_motion=lost_motion_of(drilling, best.profile, best.branch, settings.thrust),
     )
     verified = verify_hole(robot, tool, settings, answer)
     answer = replace(answer, verified=verified)
-    return replace(answer, findings=motion_findings(robot, settings, answer))
+    return replace(answer, findings=motion_findings(drilling, settings, answer))
 
 
 def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:
@@ -180,9 +207,9 @@ def _critical_rates(drilling: Drilling, profile: Profile, branch: int) -> Array:
     return critical(drilling, branch, profile.psi[corner], standoff=profile.standoff[corner]).kappa
 
 
-def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
+def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
     """What a user should know of a motion that can be run."""
-    score, hole = answer.score, answer.hole
+    robot, score, hole = drilling.robot, answer.score, answer.hole
     assert score is not None
     assert answer.verified is not None
     found = []
@@ -203,18 +230,19 @@ def motion_findings(robot: Robot, settings: Settings, answer: HolePlan) -> tuple
                 message += ", which no motion of straight legs with so few reversals keeps (proven)"
             message += "; no motion with so few reversals was found that keeps more"
         found.append(Finding("warning", "threshold", message, hole.id))
+    found += load_findings(drilling, settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
 
 
 def _with_optimality(
-    robot: Robot, settings: Settings, answer: HolePlan, best: Candidate | None, optimality: Optimality
+    drilling: Drilling, settings: Settings, answer: HolePlan, best: Sequence[Candidate], optimality: Optimality
 ) -> HolePlan:
     """The answer with what is proven of it, and with findings that say what of them is proven.
 
     Of a motion that took the place of the best, which did not pass the check, only the bounds are known.
     """
-    if (None if best is None else best.score) is not answer.score:
+    if answer.score is not None and not any(answer.score is motion.score for motion in best):
         return replace(answer, optimality=replace(optimality, travel_at_least=None, gap=None, proven=False))
     proven = replace(answer, optimality=optimality)
     if answer.motion is None:
@@ -228,7 +256,7 @@ def _with_optimality(
             for finding in answer.findings
         ]
         return replace(proven, findings=tuple(findings))
-    before, after = (motion_findings(robot, settings, each) for each in (answer, proven))
+    before, after = (motion_findings(drilling, settings, each) for each in (answer, proven))
     return replace(proven, findings=(*after, *(each for each in answer.findings if each not in before)))
 
 

@@ -147,11 +147,13 @@ def check_hole(
         baseline=answer.baseline,
         critical_rates=answer.critical_rates,
         measures=answer.measures,
+        lost_motion=answer.lost_motion,
         verified=stated.verified,
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
     )
-    searched = Counter(again.findings) - Counter(motion_findings(robot, settings, again) if again.motion else ())
-    said = [*motion_findings(robot, settings, replace(found, verified=verified)), *searched.elements()]
+    drilling = Drilling(robot, tool, stated.hole)
+    searched = Counter(again.findings) - Counter(motion_findings(drilling, settings, again) if again.motion else ())
+    said = [*motion_findings(drilling, settings, replace(found, verified=verified)), *searched.elements()]
     digits = cache(partial(_slack, robot, tool, settings, stated, own))
     differences = _fields_differ(robot, stated, found, digits)
     unsaid = (OF_A_PROOF, *(() if verified.passed else ("verification",)))  # what fails is said already

@@ -25,6 +25,7 @@ from zerorev.model.robot import JointLimits
 from zerorev.motion.criteria import AT_POSES, Poses, objective_of, worst
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import JUMP, turns_within
+from zerorev.motion.loads import leg_gives, pair_lost_motion
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
 __all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
@@ -71,7 +72,8 @@ class Legs(NamedTuple):
     """Admissible legs, in order of their rows, and what they are worth; shape (n,), extents (n, 6).
 
     `at_poses` has a column for each criterion of a pose (`zerorev.motion.criteria.AT_POSES`), NaN where it does not
-    weigh.
+    weigh. `gives` is where the gears let the tip go along each leg (`zerorev.motion.loads.leg_gives`), of no size where
+    the lost motion does not weigh.
     """
 
     row: Counts
@@ -81,13 +83,17 @@ class Legs(NamedTuple):
     low: Array
     high: Array
     at_poses: Array
+    gives: Array
 
     def of(self, chosen: Mask | slice) -> Legs:
         """Some of them."""
         return Legs(self.row[chosen], *(values[chosen] for values in self[1:]))
 
     def flipped(self) -> Legs:
-        """The same legs on the other wrist flip: joints 4 and 6 half a turn on, joint 5 with the other sign."""
+        """The same legs on the other wrist flip: joints 4 and 6 half a turn on, joint 5 with the other sign.
+
+        What the gears do is left as it was: the links of the wrist weigh little.
+        """
         low, high = self.low + HALF_TURNS, self.high + HALF_TURNS
         low[:, 4], high[:, 4] = -self.high[:, 4], -self.low[:, 4]
         return self._replace(low=low, high=high)
@@ -209,8 +215,15 @@ class LegPairs:
         figures, unweighed = worst(Poses(self.drilling, self.settings, joints), weighed), np.full(row.shape, np.nan)
         at_poses = np.stack([figures.get(name, unweighed) for name in AT_POSES], axis=-1)
         travel = steps.sum(axis=(1, 2))
-        legs = Legs(row, slope, margin, travel, joints.min(axis=1), joints.max(axis=1), at_poses)
+        legs = Legs(
+            row, slope, margin, travel, joints.min(axis=1), joints.max(axis=1), at_poses, self._gives(sides, row, slope)
+        )
         return legs.of(steps.max(axis=(1, 2)) < JUMP)
+
+    def _gives(self, sides: Sides, row: Counts, slope: Array) -> Array:
+        if "lost_motion" not in dict(self.settings.weights):
+            return np.empty((row.size, 0))
+        return leg_gives(self.drilling, sides.branch, sides.psi_t[row], slope, self.settings.thrust)
 
     def paired(self, legs: Legs, other: Legs) -> Array:
         """What all pairs of legs out of one spin cost, shape (n, m); inf beyond the limits."""
@@ -226,6 +239,7 @@ class LegPairs:
             plunge_rotation=gentler * self.drilling.hole.depth,
             tool_speed_change=gentler * self.settings.feed_plunge,
             limit_distance=(2 * distance / (limits.upper - limits.lower)).min(axis=-1),
+            lost_motion=np.nan if legs.gives.size == 0 else pair_lost_motion(legs.gives, other.gives),
             **{
                 name: (np.minimum if CRITERIA[name].more_is_better else np.maximum).outer(one, two)
                 for name, one, two in zip(AT_POSES, legs.at_poses.T, other.at_poses.T, strict=True)

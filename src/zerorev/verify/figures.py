@@ -14,11 +14,12 @@ from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.measures import Measures
-from zerorev.model.plan import Baseline, Event, HolePlan, Motion, Score
+from zerorev.model.plan import Baseline, Event, HolePlan, LostMotion, Motion, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.lever import compliance, line_rates, manipulability
+from zerorev.verify.lost_motion import lost_motion
 from zerorev.verify.sound import limit_distances
 from zerorev.verify.turning import Course, Turning, turning
 
@@ -67,13 +68,15 @@ def figures(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan) -> F
         return None
     turned = turning(course)
     score = _score(course, turned)
+    lost = lost_motion(course, settings.thrust)
     answer = replace(
         stated,
         score=score,
         wrist_offset=_wrist_offset(robot, tool),
         baseline=_baseline(robot, tool, hole, motion),
         critical_rates=_critical(robot, tool, hole, motion),
-        measures=_measures(course, settings, score),
+        measures=_measures(course, settings, score, lost),
+        lost_motion=lost,
     )
     return Figures(answer, joints)
 
@@ -164,7 +167,7 @@ def _wrist_offset(robot: Robot, tool: Tool) -> float:
     return float(np.linalg.norm(np.cross(axis, np.array([0.0, 0.0, -robot.arm.c4]) - tip)))
 
 
-def _measures(course: Course, settings: Settings, score: Score) -> Measures[float]:
+def _measures(course: Course, settings: Settings, score: Score, lost: LostMotion | None) -> Measures[float]:
     """What the criteria measure; compliance and manipulability at `POSES` poses, spread evenly along the path."""
     profile, robot, tool = course.profile, course.robot, course.tool
     lengths = np.abs(np.diff(profile.standoff))
@@ -188,4 +191,5 @@ def _measures(course: Course, settings: Settings, score: Score) -> Measures[floa
         compliance_axial=float(give[0]),
         compliance_lateral=float(give[1]),
         manipulability=float(manipulability(robot, tool, joints).min()),
+        lost_motion=np.nan if lost is None else lost.at_tip,
     )

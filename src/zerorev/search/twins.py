@@ -1,0 +1,65 @@
+"""Of motions that cost the same the one that its gears disturb least: itself, its twin, both on the other wrist flip.
+
+The mirror law gives a motion run backwards the same reversals, travel and critical rates (theory §2.1), but every joint
+then moves the other way against its load, so that gears cross to their other flank elsewhere, or not at all.
+"""
+
+from __future__ import annotations
+
+from zerorev.model.settings import Settings
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.loads import lost_motion
+from zerorev.program.lead_in import find_lead_in
+from zerorev.search.cut_short import legs_swapped
+from zerorev.search.rank import Candidate, Order
+
+__all__ = ["gentlest_first"]
+
+SAME_COST = 1e-9  # relative
+WORTH = 1e-7  # [m] by which the predicted lost motion has to be less
+SAME_LENGTH = 1e-9  # [m]
+
+
+def gentlest_first(drilling: Drilling, settings: Settings, motion: Candidate) -> tuple[Candidate, ...]:
+    """One of a motion's likes with less predicted lost motion at the tip, where there is one, and the motion itself.
+
+    One that costs more, or of which less of the lead-in runs, is not taken. For a robot without dynamics there is none.
+
+    Args:
+        drilling: what is drilled.
+        settings: by which motions are ranked.
+        motion: counted from the hole's own target.
+    """
+    branch = motion.branch
+    now = lost_motion(drilling, motion.profile, branch, settings.thrust)
+    if now is None:
+        return (motion,)
+    twin = legs_swapped(motion.profile)
+    likes = [(twin, branch)]
+    if drilling.hole.branch is None:
+        likes += [(motion.profile, branch ^ 1), (twin, branch ^ 1)]
+    judged = sorted(
+        ((lost_motion(drilling, profile, other, settings.thrust) or 0.0, k) for k, (profile, other) in enumerate(likes))
+    )
+    order = Order(drilling.without_motion(), settings)
+    for lost, k in judged:
+        if lost > now - WORTH:
+            break
+        found = order.candidate(*likes[k])
+        if found is not None and _as_good(order, found, motion) and _led_in(drilling, settings, found, motion):
+            return found, motion
+    return (motion,)
+
+
+def _as_good(order: Order, one: Candidate, other: Candidate) -> bool:
+    mine, best = order.rank(one), order.rank(other)
+    return mine[:2] <= best[:2] and mine.cost <= best.cost + SAME_COST * abs(best.cost)
+
+
+def _led_in(drilling: Drilling, settings: Settings, one: Candidate, other: Candidate) -> bool:
+    """Whether as much of the lead-in runs."""
+    lengths = []
+    for each in (one, other):
+        assert each.evaluation.motion is not None
+        lengths.append(find_lead_in(drilling, each.evaluation.motion, settings.lead_in).length)
+    return lengths[0] >= lengths[1] - SAME_LENGTH
