@@ -6,6 +6,7 @@ work there.
 
 from __future__ import annotations
 
+import gc
 import logging
 import os
 import signal
@@ -278,13 +279,15 @@ def _client(make: Any, address: str) -> Any:
         InputError: no scheduler answers, or it has no worker.
     """
     accepted = "the address that dask scheduler prints, e.g. tcp://10.0.0.1:8786"
+    client, why = None, ""
     try:
         client = make(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, ImportError) as error:  # ValueError: no such kind of address
         why = str(error).partition("\n")[0] or type(error).__name__
-        raise InputError(
-            f"no scheduler answers at {address!r} ({why})", where="--scheduler", accepted=accepted
-        ) from None
+    if client is None:
+        # a client that never came to be has to end now: while another one begins, it would wait for that for ever
+        gc.collect()
+        raise InputError(f"no scheduler answers at {address!r} ({why})", where="--scheduler", accepted=accepted)
     try:
         client.wait_for_workers(1, timeout=WAIT_FOR_WORKERS)
     except (OSError, TimeoutError):

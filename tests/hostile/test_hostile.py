@@ -216,7 +216,7 @@ def test_a_part_that_is_a_device_is_not_read(folder, capsys):
 @pytest.mark.parametrize("unseen", [ESCAPE, OVERRIDE, "one\nyes, certified", "\x85\x9b2J", "\u2028x"])
 def test_what_a_terminal_would_obey_is_shown(unseen, folder, capsys):
     plan = json.loads((folder / "plan.json").read_text())
-    finding = {"level": "info", "kind": f"x{unseen}", "message": unseen, "hole": None}
+    finding = {"level": "info", "kind": "deepest", "message": unseen, "hole": None}
     plan["findings"] = [finding]
     plan["holes"][0]["findings"] = [finding | {"hole": "h1"}]
     (folder / "plan.json").write_text(json.dumps(plan))
@@ -228,6 +228,16 @@ def test_what_a_terminal_would_obey_is_shown(unseen, folder, capsys):
     main(["check", str(folder / "plan.json"), "--json"])
     out, _ = capsys.readouterr()
     assert out.isascii() or all(character.isprintable() or character == "\n" for character in out)
+
+
+def test_a_kind_that_there_is_none_of_is_refused_and_shown_as_text(folder, capsys):
+    plan = json.loads((folder / "plan.json").read_text())
+    plan["findings"] = [{"level": "info", "kind": "\x1b[2Jx\u202e", "message": "m", "hole": None}]
+    (folder / "plan.json").write_text(json.dumps(plan))
+    said = refused(capsys, ["check", str(folder / "plan.json")])
+    assert "\x1b" not in said
+    assert "\u202e" not in said
+    assert "findings[0].kind" in said
 
 
 def test_a_name_of_a_file_is_text(tmp_path, capsys, monkeypatch):

@@ -228,5 +228,6 @@ def test_a_program_of_several_files(published, plan_of, monkeypatch, tmp_path):
 
 @pytest.mark.parametrize("name", ["program.txt", "program"])
 def test_a_file_that_ends_like_no_program(name, tmp_path):
+    (tmp_path / name).write_text("DEF a ( )")
     with pytest.raises(InputError, match=r"ending of no program.*\.src \(krl, KUKA\)"):
         read_program(tmp_path / name)

@@ -35,6 +35,7 @@ from zerorev.cli import (  # noqa: F401
     reproduce,
     robots,
     share,
+    simulate,
     view,
 )
 from zerorev.cli.common import BAD_INPUT, BUG, FINE, FOUND, INTERRUPTED, PIPE_CLOSED, app

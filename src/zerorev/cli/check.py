@@ -76,7 +76,8 @@ def check(
     if program is not None:
         from zerorev.program.dialects import dialect_of, read_program
 
-        dialect, written = dialect_of(program), read_program(program)
+        written = read_program(program)
+        dialect = dialect_of(program)
 
     from zerorev.planning.restated import check_plan, without_proofs
 

@@ -28,9 +28,9 @@ def reproduce(
     done; after an interruption the same command resumes.
 
     Args:
-        chapter: chapter4, or all that there is; chapter5 is not there yet.
+        chapter: chapter4 (planning), chapter5 (the experiments, in the virtual cell), or all.
         output: The folder; it is made if its parent exists.
-        seeds: Runs of the swarm from which rates are estimated; fewer are quicker.
+        seeds: Runs of the swarm from which rates are estimated, and a third of the sets of the cell; fewer are quicker.
         map_size: Cells of the parameter map along each axis.
     """
     for package in ("matplotlib", "xarray", "jinja2"):

@@ -34,9 +34,9 @@ def load_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> I
     hole = answer.hole.id
     events = sorted(lost.events, key=lambda event: event.joint)
     for joint, own in groupby(events, key=lambda event: event.joint):
-        told = list(own)
-        levels = sorted({event.friction for event in told})
-        first = told[0]
+        changes = list(own)
+        levels = sorted({event.friction for event in changes})
+        first = changes[0]
         place = "at the target" if first.leg == "target" else f"in the {first.leg}, {first.standoff * 1e3:.1f} mm out"
         shares = " or ".join(f"{level:.0%}" for level in levels)
         message = (

@@ -53,9 +53,9 @@ def read_program(path: Path) -> WrittenProgram:
     Raises:
         InputError: a file that cannot be read, or a statement that `export` does not write.
     """
+    known = ", ".join(f"{each.name}, {each.suffix}" for each in DIALECTS.values())
+    content = read_bytes(path, f"a program that zerorev has exported ({known})", MOST_BYTES)
     dialect = dialect_of(path)
-    what = f"a program that zerorev has exported ({dialect.name}, {dialect.suffix})"
-    content = read_bytes(path, what, MOST_BYTES)
     # byte by byte, so that a message can name the line of one that is not ASCII
     text = content.removeprefix(BYTE_ORDER_MARK).decode("latin-1")
     return dialect.read((ProgramFile(str(path), text),))

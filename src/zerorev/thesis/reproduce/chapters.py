@@ -6,11 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from zerorev.errors import InputError
-from zerorev.thesis.reproduce import errata, fig26, kinematics, rates, sample, strokes, swarm, tuning, twist, workspace
+from zerorev.thesis.reproduce import (
+    errata,
+    experiments,
+    fig26,
+    kinematics,
+    rates,
+    sample,
+    strokes,
+    swarm,
+    tuning,
+    twist,
+    workspace,
+)
 from zerorev.thesis.reproduce.context import Context
 from zerorev.thesis.reproduce.section import Section
 
-__all__ = ["CHAPTERS", "MISSING", "Part", "parts_of"]
+__all__ = ["CHAPTERS", "Part", "parts_of"]
 
 
 @dataclass(frozen=True)
@@ -32,6 +44,8 @@ class Part:
     headings: tuple[str, str] = ("ours, by its method", "ours, exact")
 
 
+CELL = ("in the virtual cell", "")
+
 CHAPTERS: dict[str, tuple[Part, ...]] = {
     "chapter4": (
         Part("kinematics", "The arm: two tables of one robot", "sec. 3.3 to 3.5, Tables 1 and 2", kinematics.make),
@@ -50,13 +64,14 @@ CHAPTERS: dict[str, tuple[Part, ...]] = {
         ),
         Part("errata", "Errata", "throughout", errata.make, ("as printed", "as needed")),
     ),
+    "chapter5": (
+        Part("joints", "The motions as run", "sec. 5.3, Figures 30 to 33, 37, 38, 41, 42", experiments.joints, CELL),
+        Part("torques", "The torques", "sec. 5.2 and 5.4, Figures 28, 29, 34, 39, 43", experiments.torques, CELL),
+        Part("deviation", "The deviation of the tip", "sec. 5.4, Figures 35, 36, 40, 44", experiments.deviation, CELL),
+        Part("rests", "What the gain rests on", "sec. 5.5 and 6.2", experiments.rests, ("published", "planned")),
+    ),
 }
 """The chapters that can be reproduced."""
-
-MISSING = {
-    "chapter5": "the experiments of chapter 5 (Figures 27 to 44) need recorded motions; they are not reproduced yet",
-}
-"""What is not there yet, and why."""
 
 
 def parts_of(chapter: str) -> tuple[Part, ...]:
@@ -70,5 +85,4 @@ def parts_of(chapter: str) -> tuple[Part, ...]:
         return tuple(part for parts in CHAPTERS.values() for part in parts)
     if chapter in CHAPTERS:
         return CHAPTERS[chapter]
-    what = MISSING["chapter5"] if chapter == "chapter5" else f"unknown chapter '{chapter}'"
-    raise InputError(what, where="reproduce", accepted=known)
+    raise InputError(f"unknown chapter '{chapter}'", where="reproduce", accepted=known)

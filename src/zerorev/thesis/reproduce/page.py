@@ -9,7 +9,7 @@ from importlib.metadata import version
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from zerorev.report.figures.style import CANNOT_RUN, REVERSAL_COLOURS
-from zerorev.thesis.reproduce.chapters import MISSING, Part
+from zerorev.thesis.reproduce.chapters import Part
 from zerorev.thesis.reproduce.context import Context
 from zerorev.thesis.reproduce.section import Section
 
@@ -40,6 +40,5 @@ def page(context: Context, made: Sequence[tuple[Part, Section]]) -> str:
         few=context.few,
         map_size=context.map_size,
         made=made,
-        missing=list(MISSING.values()),
         colours=[*keys, ("cannot be run", CANNOT_RUN)],
     )

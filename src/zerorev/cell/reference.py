@@ -1,0 +1,303 @@
+"""What a controller makes of a program: stand-off and spin over time, and the joints that follow from them.
+
+Controllers blend a corner with a parabola, ramp the feed up and down, and smooth what is left. Smoothed are stand-off
+and spin, not joints, so that the tip stays on the axis. A feed at which a joint, a drive or the turning tool would be
+too fast is slowed, as a controller does; the speed that is reached is part of the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.kernels import dynamics
+from zerorev.kernels.arm import angles_along
+from zerorev.model._arrays import Array
+from zerorev.model.dynamics import Load, nominal_drives
+from zerorev.motion.bodies import bodies_of
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.kinematics import jacobian
+from zerorev.motion.loads import GRAVITY
+from zerorev.program.neutral import HoleProgram
+
+__all__ = ["Followed", "Manner", "Track", "followed", "track_of"]
+
+STEP = 1e-3  # [s] between nodes
+MASS_EVERY = 20  # nodes between mass matrices
+ORIENTATION_SPEED = float(np.deg2rad(200.0))  # [rad/s] $VEL.ORI
+EFFORT = 0.8  # share of the greatest torque that a motion may ask for
+LEVERS = (0.3, 0.55, 0.8)  # shares of the way to the tip at which a unit mass is weighed: three make a parabola
+DIFFERENCE = 1e-4  # [rad] by which the weights are moved to see how their torques change
+MOST_SLOWINGS = 12
+FITS = 1.002
+
+
+@dataclass(frozen=True)
+class Manner:
+    """How a controller runs a program.
+
+    Attributes:
+        acceleration: of the tip along its path [m/s^2].
+        smoothing: width of each of two moving averages [s].
+        corner: radius of the blend at the corner [m]; None: as programmed.
+        feed: of both legs [m/s]; None: as programmed.
+    """
+
+    acceleration: float = 2.0
+    smoothing: float = 30e-3
+    corner: float | None = None
+    feed: float | None = None
+
+
+@dataclass(frozen=True)
+class Track:
+    """A program's points in the twist plane, n of them.
+
+    Attributes:
+        points: stand-off [m] and spin [rad], shape (n, 2).
+        feed: of the moves between them [m/s], shape (n - 1,).
+        blend: radii at the points [m], shape (n,); 0 at the first and the last.
+        start: joints at the first point, with turns [rad], shape (6,).
+    """
+
+    points: Array
+    feed: Array
+    blend: Array
+    start: Array
+
+
+def track_of(program: HoleProgram, manner: Manner) -> Track:
+    """The points of a hole's moves, with feeds and blends as the controller is asked for them.
+
+    Args:
+        program: of the hole.
+        manner: may ask for another feed, or another blend at the corner.
+    """
+    first, moves = program.start, program.moves
+    points = np.array([(first.standoff, first.psi), *((move.standoff, move.psi) for move in moves)])
+    feed = np.array([move.feed if manner.feed is None else manner.feed for move in moves])
+    blend = np.array([0.0, *(move.blend for move in moves)])
+    blend[-1] = 0.0
+    if manner.corner is not None:
+        length = np.abs(np.diff(points[:, 0]))
+        corner = program.corner + 1
+        blend[corner] = min(manner.corner, length[corner - 1] / 2, length[corner] / 2)
+    return Track(points, feed, blend, first.joints)
+
+
+@dataclass(frozen=True)
+class Followed:
+    """A reference at nodes `STEP` apart, N of them.
+
+    Attributes:
+        drilling: robot, tool and hole.
+        standoff: [m], shape (N,).
+        psi: spin [rad], shape (N,).
+        q: joints with turns [rad], shape (N, 6).
+        qd: [rad/s], shape (N, 6).
+        qdd: [rad/s^2], shape (N, 6).
+        slowed: by how much the feed was slowed, 1 where it was not.
+    """
+
+    drilling: Drilling
+    standoff: Array
+    psi: Array
+    q: Array
+    qd: Array
+    qdd: Array
+    slowed: float
+
+    @property
+    def turn(self) -> int:
+        """The node of greatest depth."""
+        return int(np.argmin(self.standoff))
+
+    @property
+    def speed(self) -> float:
+        """Greatest speed of the tip along the axis that is reached [m/s]."""
+        return float(np.abs(np.diff(self.standoff)).max() / STEP)
+
+    @cached_property
+    def levers(self) -> Array:
+        """Velocity of the tip per speed of the joints, base frame [m], shape (N, 6, 3)."""
+        drilling = self.drilling
+        J = jacobian(drilling.robot, drilling.tool, self.q)
+        return np.ascontiguousarray(np.swapaxes(J[:, :3], 1, 2))
+
+    @cached_property
+    def torques(self) -> Array:
+        """Torques of the bare arm, and of a unit mass at `LEVERS` besides [N m], shape (4, N, 6)."""
+        bare = self._torques_of(self._bodies(None))
+        return np.stack([bare, *(self._torques_of(self._bodies(lever)) - bare for lever in LEVERS)])
+
+    @cached_property
+    def masses(self) -> Array:
+        """Mass matrices every `MASS_EVERY` nodes of the bare arm, and of a unit mass besides [kg m^2], (4, K, 6, 6)."""
+        bare = self._masses_of(self._bodies(None))
+        return np.stack([bare, *(self._masses_of(self._bodies(lever)) - bare for lever in LEVERS)])
+
+    @cached_property
+    def stiffenings(self) -> Array:
+        """How the weights' torques change with the joints [N m/rad], shape (4, K, 6, 6), as `masses`."""
+        bare = self._stiffenings_of(self._bodies(None))
+        return np.stack([bare, *(self._stiffenings_of(self._bodies(lever)) - bare for lever in LEVERS)])
+
+    def of_load(self, values: Array, mass: float, lever: float) -> Array:
+        """`torques` or `masses` for a point mass [kg] at a share of the way from flange to tip; exact, not fitted.
+
+        Args:
+            values: of the bare arm and of a unit mass at `LEVERS`.
+            mass: of the tool [kg].
+            lever: share of the way to the tip.
+        """
+        a, b, c = LEVERS
+        weights = (
+            (lever - b) * (lever - c) / ((a - b) * (a - c)),
+            (lever - a) * (lever - c) / ((b - a) * (b - c)),
+            (lever - a) * (lever - b) / ((c - a) * (c - b)),
+        )
+        return np.asarray(values[0] + mass * sum(w * each for w, each in zip(weights, values[1:], strict=True)))
+
+    @cached_property
+    def loaded(self) -> tuple[Array, Array, Array]:
+        """Torques (N, 6), mass matrices and stiffenings (K, 6, 6) with the tool's own load."""
+        bodies = self.drilling.bodies
+        assert bodies is not None
+        return self._torques_of(bodies), self._masses_of(bodies), self._stiffenings_of(bodies)
+
+    def _torques_of(self, bodies: dynamics.Bodies) -> Array:
+        out = np.empty_like(self.q)
+        dynamics.inverse_dynamics(self.drilling.robot.arm, bodies, self.q, self.qd, self.qdd, GRAVITY, out)
+        return out
+
+    @cached_property
+    def _sparse(self) -> Array:
+        """The joints every `MASS_EVERY` nodes, the last one beyond the end, shape (K, 6)."""
+        rows = np.arange(0, len(self.q) + MASS_EVERY, MASS_EVERY).clip(max=len(self.q) - 1)
+        return np.ascontiguousarray(self.q[rows])
+
+    def _masses_of(self, bodies: dynamics.Bodies) -> Array:
+        out = np.empty((len(self._sparse), 6, 6))
+        dynamics.mass_matrix(self.drilling.robot.arm, bodies, self._sparse, out)
+        return out
+
+    def _stiffenings_of(self, bodies: dynamics.Bodies) -> Array:
+        away = DIFFERENCE * np.eye(6)
+        q = (self._sparse[:, None] + np.concatenate([away, -away])).reshape(-1, 6)
+        held, still = np.empty_like(q), np.zeros_like(q)
+        dynamics.inverse_dynamics(self.drilling.robot.arm, bodies, q, still, still, GRAVITY, held)
+        ahead, back = np.moveaxis(held.reshape(-1, 2, 6, 6), 1, 0)
+        return np.ascontiguousarray(np.swapaxes((ahead - back) / (2 * DIFFERENCE), 1, 2))
+
+    def _bodies(self, lever: float | None) -> dynamics.Bodies:
+        robot, tool = self.drilling.robot, self.drilling.tool
+        load = None
+        if lever is not None:
+            load = Load(1.0, lever * tool.T_flange_tcp[:3, 3], np.zeros((3, 3)))
+        bodies = bodies_of(robot, replace(tool, load=load))
+        assert bodies is not None
+        return bodies
+
+
+def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> Followed:
+    """The reference of a track, slowed until the arm can run it.
+
+    Args:
+        drilling: of a robot with dynamics.
+        branch: 0..7.
+        track: of the program.
+        manner: of the controller.
+
+    Raises:
+        InputError: the robot has no dynamics; the track leaves the reach of the branch.
+    """
+    dynamics_of = drilling.robot.dynamics
+    if dynamics_of is None:
+        raise InputError(
+            f"the masses of the robot {drilling.robot.name} are not known",
+            where="robot",
+            accepted="a robot file with dynamics: links, payload_kg",
+        )
+    drives = nominal_drives(dynamics_of.payload)
+    slowed = 1.0
+    for _ in range(MOST_SLOWINGS):
+        found = _at_feed(drilling, branch, replace(track, feed=track.feed * slowed), manner, slowed)
+        spin = np.abs(np.gradient(found.psi, STEP)).max() / ORIENTATION_SPEED
+        ratio = max(spin, float((np.abs(found.qd) / drilling.robot.limits.speed).max()))
+        if dynamics_of.effort_limit is not None:
+            asked = np.abs(found.loaded[0] + drives.inertia * found.qdd) + drives.coulomb
+            ratio = max(ratio, float((asked / (EFFORT * dynamics_of.effort_limit)).max()))
+        if ratio <= FITS:
+            break
+        slowed /= ratio
+    return found
+
+
+def _at_feed(drilling: Drilling, branch: int, track: Track, manner: Manner, slowed: float) -> Followed:
+    standoff, psi = _over_time(track, manner).T
+    q = np.empty((standoff.size, 6))
+    angles_along(
+        drilling.robot.arm, drilling.plane, np.ascontiguousarray(standoff), np.ascontiguousarray(psi), branch, q
+    )
+    if np.isnan(q).any():
+        raise InputError("the motion leaves the reach of its branch", where=f"hole {drilling.hole.id}")
+    q = np.unwrap(q, axis=0)
+    q += 2 * np.pi * np.round((track.start - q[0]) / (2 * np.pi))
+    qd = np.gradient(q, STEP, axis=0)
+    return Followed(drilling, standoff, psi, q, qd, np.gradient(qd, STEP, axis=0), slowed)
+
+
+def _over_time(track: Track, manner: Manner) -> Array:
+    """Stand-off and spin at nodes, shape (N, 2): blended, ramped up and down, smoothed."""
+    pieces = _pieces(track)
+    ends = np.cumsum([piece[0] for piece in pieces])
+    whole, first, last = float(ends[-1]), float(track.feed[0]), float(track.feed[-1])
+    up, down = min(first / manner.acceleration, whole), min(last / manner.acceleration, whole)
+    lasting = whole + (up + down) / 2
+    t = np.arange(0.0, lasting + STEP, STEP)
+    # the feed grows and shrinks evenly: so does the time along the path
+    along = t - up / 2
+    along = np.where(t < up, t**2 / (2 * up), along)
+    left = np.maximum(lasting - t, 0.0)
+    along = np.minimum(along, np.where(left < down, whole - left**2 / (2 * down), along))
+    along = np.clip(along, 0.0, whole)
+    piece = np.minimum(np.searchsorted(ends, along), len(pieces) - 1)
+    begun = np.concatenate([[0.0], ends[:-1]])
+    path = np.empty((t.size, 2))
+    for k, (duration, a, c, b, rate, gain) in enumerate(pieces):
+        own = piece == k
+        since = along[own] - begun[k]
+        u = np.minimum(rate * since + 0.5 * gain * since**2, 1.0)[:, None] if duration > 0 else np.ones((own.sum(), 1))
+        path[own] = (1 - u) ** 2 * a + 2 * u * (1 - u) * c + u**2 * b
+    width = max(round(manner.smoothing / STEP), 0)
+    for _ in range(2 if width > 1 else 0):
+        before, after = np.tile(path[:1], (width, 1)), np.tile(path[-1:], (width, 1))
+        summed = np.cumsum(np.concatenate([before, path, after]), axis=0)
+        path = (summed[width:] - summed[:-width]) / width
+    return path
+
+
+def _pieces(track: Track) -> Sequence[tuple[float, Array, Array, Array, float, float]]:
+    """Straight moves and parabolas between them: duration [s], the three points, and how the parameter grows."""
+    points, found = track.points, []
+    at = points[0]
+    for k, (target, speed) in enumerate(zip(points[1:], track.feed, strict=True), start=1):
+        radius = track.blend[k]
+        length = abs(target[0] - points[k - 1][0])
+        enter = target + (points[k - 1] - target) * (radius / length)
+        run = abs(enter[0] - at[0])
+        if run > 0:
+            found.append((run / speed, at, (at + enter) / 2, enter, speed / run, 0.0))
+        at = enter
+        if radius > 0:
+            after, away = points[k + 1], track.feed[k]
+            leave = target + (after - target) * (radius / abs(after[0] - target[0]))
+            duration = 4 * radius / (speed + away)
+            begin, end = speed / (2 * radius), away / (2 * radius)
+            found.append((duration, enter, target, leave, begin, (end - begin) / duration))
+            at = leave
+    return found

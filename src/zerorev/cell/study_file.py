@@ -1,0 +1,146 @@
+"""A study on disk: a folder of zarr with one group a hole, each written whole, so that an interrupted study resumes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from zerorev.cell.ensemble import QUANTILES, SIDES, HoleStudy
+from zerorev.cell.parameters import ParameterSet
+from zerorev.cell.reference import Manner
+from zerorev.errors import InputError
+from zerorev.files.output import check_whole_folder, write_whole_folder
+from zerorev.model.fingerprint import fingerprint
+from zerorev.model.plan import Plan
+
+__all__ = ["StudyFolder", "read_holes"]
+
+FORMAT = "zerorev.study/1"
+MARK = "zarr.json"
+
+
+class StudyFolder:
+    """The folder of a study that is being made."""
+
+    def __init__(
+        self, path: Path, plan: Plan, sets: Sequence[ParameterSet], seed: int, manner: Manner, thrust: float
+    ) -> None:
+        """Begin, or resume what was begun with the same plan, sets and manner.
+
+        Args:
+            path: of the folder.
+            plan: that is studied.
+            sets: of parameters.
+            seed: of them.
+            manner: of the controller.
+            thrust: of the drill [N].
+
+        Raises:
+            InputError: there is another study.
+            OutputError: it cannot be written there.
+        """
+        import zarr
+
+        self.path = path
+        values = [tuple(sorted(each.values.items())) for each in sets]
+        # what was planned, not what the check said of it, or when
+        planned = [(hole.hole, hole.motion) for hole in plan.holes]
+        own = fingerprint(plan.robot, plan.tool, plan.settings, planned, values, manner, thrust)
+        if path.exists():
+            check_whole_folder(path, MARK)
+            stated = _head(path)
+            if stated.get("fingerprint") != own:
+                raise InputError(
+                    "there is another study", where=str(path), accepted="another folder, or the same plan and options"
+                )
+            return
+        names = sorted({name for each in sets for name in each.values})
+
+        def fill(folder: Path) -> None:
+            group = zarr.open_group(folder, mode="w", zarr_format=3)
+            group.attrs.update({
+                "format": FORMAT, "fingerprint": own, "plan": plan.name, "robot": plan.robot.name, "seed": seed,
+                "thrust_n": thrust, "manner": asdict(manner), "parameters": names,
+            })  # fmt: skip
+            table = np.array([[each.values[name] for name in names] for each in sets])
+            group.create_array("parameters", data=table)
+
+        write_whole_folder(path, MARK, fill)
+
+    def known(self) -> dict[str, HoleStudy]:
+        """Holes that are finished, by id."""
+        return {each.id: each for each in read_holes(self.path)}
+
+    def add(self, number: int, study: HoleStudy) -> None:
+        """Write a hole, whole or not at all.
+
+        Args:
+            number: of the hole in its plan, from 0.
+            study: of it.
+        """
+        import xarray
+
+        dataset = xarray.Dataset(
+            {
+                "deviation_m": (("motion", "side", "set"), study.deviation),
+                "vertical_m": (("motion", "side", "set"), study.vertical),
+                "offset_m": (("motion", "side", "set"), study.offset),
+                "swing_nm": (("motion", "joint", "set"), study.swing),
+                "profile_m": (("motion", "side", "quantile", "path"), study.profile),
+                "speed_m_s": (("motion",), study.speed),
+            },
+            coords={"joint": np.arange(1, 7), "quantile": list(QUANTILES), "path": study.path},
+            attrs={"hole": study.id, "motions": list(study.motions), "sides": list(SIDES)},
+        )
+
+        def fill(folder: Path) -> None:
+            dataset.to_zarr(folder, mode="w", consolidated=False, zarr_format=3)
+
+        write_whole_folder(self.path / f"hole_{number:05d}", MARK, fill)
+
+
+def read_holes(path: Path) -> list[HoleStudy]:
+    """The finished holes of a study, in the plan's order.
+
+    Args:
+        path: of its folder.
+
+    Raises:
+        InputError: no study.
+    """
+    import xarray
+
+    _head(path)
+    found = []
+    for folder in sorted(path.glob("hole_*")):
+        if not (folder / MARK).exists():
+            continue
+        try:
+            held = xarray.open_zarr(folder, chunks=None, consolidated=False, zarr_format=3).load()
+        except Exception as error:  # what zarr raises on a damaged folder is of many kinds
+            raise InputError(
+                f"{folder.name} is damaged: {error}", where=str(path), accepted="remove it; it is made again"
+            ) from error
+        found.append(HoleStudy(
+            str(held.attrs["hole"]), tuple(held.attrs["motions"]), held["deviation_m"].values,
+            held["vertical_m"].values, held["offset_m"].values, held["swing_nm"].values, held["profile_m"].values,
+            held["path"].values, held["speed_m_s"].values,
+        ))  # fmt: skip
+    return found
+
+
+def _head(path: Path) -> dict[str, Any]:
+    import zarr
+
+    accepted = "a folder that zerorev simulate has written"
+    try:
+        head = dict(zarr.open_group(path, mode="r", zarr_format=3).attrs)
+    except Exception as error:
+        raise InputError("no study", where=str(path), accepted=accepted) from error
+    if head.get("format") != FORMAT:
+        raise InputError("no study", where=str(path), accepted=accepted)
+    return head

@@ -1,0 +1,106 @@
+"""Pictures of a study: how far the tip strays along the path, and what each hole gains, with their ranges."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from zerorev.cell.ensemble import SIDES, HoleStudy, band
+from zerorev.cell.motions import MotionName
+from zerorev.files.output import make_folder, write_bytes
+from zerorev.report.figures import style
+
+__all__ = ["gains", "stray", "write_figures"]
+
+DRAWN: tuple[MotionName, ...] = ("baseline", "plan")
+WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
+COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
+LOW, MEDIAN, HIGH = range(3)
+
+
+def stray(hole: HoleStudy) -> Figure:
+    """Distance of the tip from its mean path [mm] over the path, of plan and constant spin: median and 5 to 95 %.
+
+    Args:
+        hole: of a study.
+    """
+    count = hole.deviation.shape[-1]
+    subtitle = f"hole {hole.id[: style.TITLE_LENGTH]}   |   median and 5 to 95 % of {count} possible arms"
+    figure = style.headed_figure("How far the tip strays from its mean path", subtitle, 4.4)
+    grid = figure.add_gridspec(1, 2)
+    axes = [figure.add_subplot(grid[0, 0])]
+    axes.append(figure.add_subplot(grid[0, 1], sharey=axes[0]))
+    for k, (ax, side) in enumerate(zip(axes, SIDES, strict=True)):
+        style.bare_axes(ax)
+        ax.set_title(WORDS[side], size=9.5, color=style.INK, loc="left")
+        style.label(ax, "path, from the start over the turn to the end", "deviation [mm]" if k == 0 else "")
+        ax.axvspan(-0.5, 0.5, color="#f4f4f4", zorder=0, linewidth=0)
+        for motion in DRAWN:
+            low, median, high = hole.profile[hole.of(motion), k] * 1e3
+            ax.fill_between(hole.path, low, high, color=COLOURS[motion], alpha=0.2, linewidth=0, zorder=2)
+            ax.plot(hole.path, median, color=COLOURS[motion], linewidth=2.0, zorder=3)
+        ax.set_xticks([-1, 0, 1], ["start", "turn", "end"])
+        ax.set_ylim(bottom=0)
+    handles = [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=WORDS[motion]) for motion in DRAWN]
+    style.legend_below(figure, handles, 2)
+    return figure
+
+
+def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
+    """What the plan gains at each hole [%], by the encoders and at the tool: median and 5 to 95 %.
+
+    Args:
+        studied: holes, one or more.
+        ax: to draw into; None: a figure with a heading.
+
+    Raises:
+        InputError: the axes are not plane ones.
+    """
+    subtitle = f"{len(studied)} holes   |   less deviation than at constant spin, median and 5 to 95 %"
+    figure, axes = style.one_axes(ax, "What the plan gains", subtitle, 4.4)
+    style.bare_axes(axes)
+    style.label(axes, "hole", "gain [%]")
+    colours = style.JOINT_COLOURS[0], style.JOINT_COLOURS[1]
+    for k in range(len(SIDES)):
+        bands = np.array([band(hole.gain()[k]) for hole in studied]) * 100
+        x = np.arange(len(studied)) + (k - 0.5) * 0.24
+        away = np.abs(bands[:, [1, 2]] - bands[:, [0]]).T
+        axes.errorbar(x, bands[:, 0], away, fmt="os"[k], color=colours[k], capsize=2.5, linewidth=1.2, markersize=5)
+    axes.axhline(0, color=style.MUTED, linewidth=0.8)
+    axes.set_ylim(max(axes.get_ylim()[0], -120), 105)
+    if len(studied) <= 12:
+        axes.set_xticks(range(len(studied)), [hole.id[:16] for hole in studied])
+        for tick in axes.get_xticklabels():
+            tick.set_parse_math(False)
+    handles = [
+        Line2D([], [], color=colours[k], marker="os"[k], linestyle="none", label=WORDS[side])
+        for k, side in enumerate(SIDES)
+    ]
+    style.legend_below(figure, handles, 2, ax)
+    return figure
+
+
+def write_figures(studied: Sequence[HoleStudy], folder: Path) -> list[Path]:
+    """Write the pictures of a study; what is there of the same name is replaced.
+
+    Args:
+        studied: holes, one or more.
+        folder: made, if its parent exists.
+
+    Returns:
+        the files.
+    """
+    make_folder(folder)
+    files = [folder / "gains.png"]
+    write_bytes(files[0], style.png(gains(studied)))
+    for number, hole in enumerate(studied, start=1):
+        stem = re.sub(r"[^A-Za-z0-9.-]+", "_", hole.id).strip("._")[:40]
+        files.append(folder / f"stray_{number:03d}_{stem}.png")
+        write_bytes(files[-1], style.png(stray(hole)))
+    return files

@@ -1,0 +1,108 @@
+"""What the terminal and a JSON show of a study of a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+from zerorev.cell.ensemble import SIDES, Band, HoleStudy, band
+from zerorev.cell.motions import MotionName
+
+__all__ = ["NAMES", "answer", "lines", "table"]
+
+NAMES: dict[MotionName, str] = {
+    "baseline": "constant spin",
+    "plan": "plan",
+    "twin": "its twin",
+    "compensated": "constant spin, lost motion compensated",
+    "biased": "constant spin, gears laid on one flank",
+}
+
+
+def answer(
+    studied: Sequence[HoleStudy], left_out: Mapping[str, str], *, sets: int, seed: int, cell: str | None
+) -> dict[str, Any]:
+    """The study as plain data.
+
+    Args:
+        studied: holes.
+        left_out: why others are not, by id.
+        sets: how many were drawn.
+        seed: of them.
+        cell: name of the cell file, or None.
+    """
+    return {
+        "holes": [_hole(hole) for hole in studied],
+        "left_out": [{"id": hole, "why": why} for hole, why in left_out.items()],
+        "sets": sets,
+        "seed": seed,
+        "cell": cell,
+    }
+
+
+def _hole(hole: HoleStudy) -> dict[str, Any]:
+    return {
+        "id": hole.id,
+        "gain_percent": {side: _band(band(hole.gain()[k]), 100, 1) for k, side in enumerate(SIDES)},
+        "gain_percent_of": {
+            motion: {side: _band(band(hole.gain(motion)[k]), 100, 1) for k, side in enumerate(SIDES)}
+            for motion in hole.motions
+            if motion not in ("baseline", "plan")
+        },
+        "deviation_mm": {
+            motion: {side: _band(band(hole.deviation[hole.of(motion), k]), 1e3, 4) for k, side in enumerate(SIDES)}
+            for motion in hole.motions
+        },
+        "feed_mm_s": {motion: round(float(hole.speed[hole.of(motion)]) * 1e3, 3) for motion in hole.motions},
+    }
+
+
+def _band(values: Band, scale: float, digits: int) -> dict[str, float]:
+    return {
+        "median": round(values.median * scale, digits),
+        "p05": round(values.low * scale, digits),
+        "p95": round(values.high * scale, digits),
+    }
+
+
+def table(studied: Sequence[HoleStudy]) -> Table:
+    """One row for each hole and motion: deviation by the encoders and at the tool, gain, speed reached."""
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    shown.add_column(Text("hole"), no_wrap=True)
+    shown.add_column(Text("motion"))
+    for head in ("encoders\n[mm]", "gain\n[%]", "tool\n[mm]", "gain\n[%]"):
+        shown.add_column(Text(head), justify="right")
+    shown.add_column(Text("speed\n[mm/s]"), justify="right")
+    for hole in studied:
+        for motion in hole.motions:
+            row, cells = hole.of(motion), []
+            for k in range(len(SIDES)):
+                cells.append(_range(band(hole.deviation[row, k]), 1e3, 3))
+                cells.append("" if motion == "baseline" else _range(band(hole.gain(motion)[k]), 100, 0))
+            first = hole.id if motion == hole.motions[0] else ""
+            shown.add_row(*(Text(cell) for cell in (first, NAMES[motion], *cells, f"{hole.speed[row] * 1e3:.0f}")))
+    return shown
+
+
+def _range(values: Band, scale: float, digits: int) -> str:
+    median, low, high = (f"{value * scale:.{digits}f}" for value in values)
+    return f"{median} [{low}, {high}]"
+
+
+def lines(studied: Sequence[HoleStudy], left_out: Mapping[str, str], thrust: float) -> Iterator[Text]:
+    """What to know beside the table."""
+    for hole, why in left_out.items():
+        yield Text(f"left out: hole {hole}: {why}")
+    if studied:
+        yield Text(
+            "median [5th, 95th percentile] over the sets; friction, stiffness and lost motion are guessed ranges"
+        )
+    if thrust > 0:
+        yield Text(
+            f"with {thrust:g} N of thrust on a free tip; a foot on the part that takes it, and lets the tool turn, "
+            "leaves the arm without"
+        )
