@@ -27,6 +27,7 @@ from scipy.spatial.transform import Rotation
 import zerorev as zr
 from oracles.hostile_inputs import changed_bytes, changed_data, made_up
 from zerorev.errors import ZerorevError
+from zerorev.files.cell_file import CellFile, read_cell
 from zerorev.files.conversion import robot_data, settings_data
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json, read_robot, read_tool
 from zerorev.files.map_file import read_map_file
@@ -64,6 +65,13 @@ MAP: dict[str, Any] = {
     "targets": {"x_mm": [450, 500.5], "y_mm": {"start": -200, "stop": 200, "step": 50}, "z_mm": [700]},
     "directions": [[1, 0, 0], [1, 0.5, 0]], "min_rate_deg_per_mm": 0.01, "psi_bound_deg": 300,
 }  # fmt: skip
+CELL = """format: zerorev.cell/1
+robot: kuka_kr6_r700_2
+parameters:
+  friction_2: {nominal: 1.12, low: 1.08, high: 1.16, law: log, basis: fitted, source: sweeps}
+  tcp_error: {nominal: 0, low: 0, high: 2.0e-4, law: even}
+conditioning: {baseline_mm: {P1: 0.2, '2': 0.15}, feed_mm_s: 200.0, corner_mm: 10.0, factor: 2.0}
+"""
 TABLE = (
     "id,x_mm,y_mm,z_mm,i,j,k,depth_mm\na,480,300,800,1,0,0,20\nb,490.5,310,790,1,0.1,0,12.5\nc,480,33e1,800,1,0,0,8\n"
 )
@@ -259,6 +267,17 @@ def check_sheet(data: bytes, _: Path) -> None:
             assert np.isin(np.round(row.hole.target * 1e3, 6), np.round(numbers, 6)).all()
 
 
+def check_cell(data: bytes, folder: Path) -> None:
+    (folder / "cell.yaml").write_bytes(data)
+    cell, said = read_cell(folder / "cell.yaml"), yaml_of(data)
+    for name, each in cell.ranges.items():
+        assert 0 <= each.low <= each.nominal <= each.high < math.inf
+        if given := (said.get("parameters") or {}).get(name):
+            assert (each.nominal, each.low, each.high) == (given["nominal"], given["low"], given["high"])
+    if cell.conditioning is not None:
+        assert cell.conditioning.baseline.keys() == {str(key) for key in said["conditioning"]["baseline_mm"]}
+
+
 def check_map(data: bytes, folder: Path) -> None:
     (folder / "map.yaml").write_bytes(data)
     task, said = read_map_file(folder / "map.yaml"), yaml_of(data)
@@ -336,6 +355,7 @@ def readers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Reader]:
         "table": Reader(TABLE.encode(), check_table, share=75),
         "sheet": Reader(TABLE.replace(",", ";").encode(), check_sheet, share=75),
         "map": Reader(yaml_text(MAP).encode(), check_map, **as_yaml, schema=MapFile, share=100),
+        "cell": Reader(CELL.encode(), check_cell, **as_yaml, schema=CellFile, share=50),
         "part": Reader(part_bytes, check_part, share=50),
         "program": Reader(export(plan).text.encode(), check_program, share=50),
         "urdf": Reader(URDF.encode(), check_urdf, share=50),

@@ -196,10 +196,13 @@ def write_plan(plan: Plan, path: str | Path) -> None:
 
 
 def write_schemas(folder: str | Path) -> None:
-    """Write the JSON Schemas of job, plan, depth and map files, job.schema.json and so on, into a folder."""
+    """Write the JSON Schemas of job, plan, depth, map and cell files, job.schema.json and so on, into a folder."""
+    from zerorev.files.cell_file import CellFile
     from zerorev.files.map_schema import MapFile
 
-    forms: dict[str, type[Form]] = {"job": JobFile, "plan": PlanFile, "depth": DepthFile, "map": MapFile}
+    forms: dict[str, type[Form]] = {
+        "job": JobFile, "plan": PlanFile, "depth": DepthFile, "map": MapFile, "cell": CellFile
+    }  # fmt: skip
     for name, form in forms.items():
         schema = {"$schema": "https://json-schema.org/draft/2020-12/schema"} | form.model_json_schema()
         write_text(Path(folder) / f"{name}.schema.json", json_text(schema))

@@ -124,7 +124,7 @@ def _field(form: type[Form], path: FieldPath) -> tuple[type[Form], FieldInfo | N
     for part in path:
         if isinstance(part, str):
             owner = inner
-            field = owner.model_fields.get(part)
+            field = owner.model_fields.get(part, field)  # a key of a plain mapping is of the mapping's own field
             inner = (field and _form_in(field.annotation)) or owner
     return owner, field
 
