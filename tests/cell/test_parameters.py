@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zerorev.cell.parameters import HELD, RANGES, drawn, nominal
+from zerorev.cell.parameters import RANGES, drawn, nominal
 from zerorev.errors import InputError
 from zerorev.files.io import read_robot
 from zerorev.kernels.plant import GAP, HYSTERESIS
 from zerorev.model.dynamics import nominal_drives
+from zerorev.model.ranges import HELD
 
 
 def test_a_seed_gives_the_same_sets_and_another_other_ones():

@@ -70,9 +70,10 @@ def simulate(
         need("xarray", "xarray", "--output", "maps")
         need("zarr", "zarr", "--output", "maps")
     from zerorev.cell.ensemble import HoleStudy, study
-    from zerorev.cell.parameters import HELD, drawn
+    from zerorev.cell.parameters import drawn
     from zerorev.cell.reference import Manner
     from zerorev.files.io import read_plan
+    from zerorev.model.ranges import HELD
     from zerorev.report.words import study as shown
 
     stated = read_plan(plan)
