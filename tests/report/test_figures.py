@@ -17,11 +17,12 @@ from zerorev.errors import InputError, OutputError
 from zerorev.files.io import read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Plan
+from zerorev.model.plan import LostMotion, LostMotionEvent, Plan
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
 from zerorev.motion.critical import kappa_of
 from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.motion.loads import lost_motion_of
 from zerorev.report import figures
 from zerorev.report.figures import FIGURES, critical_rates, file_stems, joint_angles, twist_plane, write_figures
 from zerorev.report.figures.plane import SLATE
@@ -92,6 +93,16 @@ class TestJointAngles:
             assert baseline[0] == pytest.approx(planned[0], abs=1e-9)
             assert baseline[-1] == pytest.approx(baseline[0], abs=1e-6)
 
+    def test_loads_that_change_their_sign_are_marked(self, published):
+        hole = published.holes[2]
+        assert not any("load" in text for text in texts(joint_angles(published, hole)))
+        events = (LostMotionEvent(2, "plunge", 0.01, 0.1), LostMotionEvent(4, "target", 0.0, 1.0))
+        figure = joint_angles(published, replace(hole, lost_motion=LostMotion(1e-4, None, events)))
+        assert line(figure.axes[1], "A2 loads").get_xdata() == pytest.approx([20])
+        assert line(figure.axes[3], "A4 loads").get_xdata() == pytest.approx([30])
+        assert len(line(figure.axes[0], "A1 loads").get_xdata()) == 0
+        assert texts(figure).count("its load changes sign") == 1
+
     def test_reversals_are_marked_where_they_happen(self, make_plan):
         # the five-point motion turns A6 round twice within the plunge
         plan = make_plan((50, 20, 0, 30, 50), (14, 4, -5.9, -15, -30))
@@ -156,6 +167,32 @@ class TestTwistPlane:
         assert "out of reach" in legend
         assert "over a joint limit (A5)" in legend
         assert "reversal" not in legend
+
+    def test_curves_of_zero_load_are_of_the_way_the_joints_turn(self, published):
+        # at position 3 the plunge crosses those of A2 and A4 at a tenth of their friction
+        hole = published.holes[2]
+        axes = twist_plane(published, hole).axes[0]
+        drawn = {to_hex(each.get_color()) for each in axes.lines if each.get_label() == "load"}
+        assert {JOINT_COLOURS[1].lower(), JOINT_COLOURS[3].lower()} <= drawn
+        names = {text.get_text() for text in axes.texts if "%" in text.get_text()}
+        assert {"A2 10%", "A4 10%"} <= names
+        profile = hole.motion.profile
+        events = lost_motion_of(Drilling(published.robot, published.tool, hole.hole), profile, 4).events
+        assert len(events) == 2
+        for event in events:
+            spin = np.rad2deg(np.interp(event.standoff, profile.standoff[1::-1], profile.psi[1::-1]))
+            curves = [
+                np.column_stack([each.get_xdata(), each.get_ydata()])
+                for each in axes.lines
+                if each.get_label() == "load" and to_hex(each.get_color()) == JOINT_COLOURS[event.joint - 1].lower()
+            ]
+            apart = np.concatenate(curves) - [-event.standoff * 1e3, spin]
+            assert np.abs(apart / [60, 360]).max(axis=1).min() < 0.01  # of the picture
+        assert texts(twist_plane(published, hole)).count("load 0 with % of friction") == 1
+
+    def test_without_masses_nothing_is_said_of_loads(self, published):
+        bare = replace(published, robot=replace(published.robot, dynamics=None))
+        assert not any("load" in text for text in texts(twist_plane(bare, bare.holes[2])))
 
     def test_names_the_joints_that_reverse(self, make_plan):
         plan = make_plan(psi_deg=(0, 0, 0))

@@ -15,7 +15,7 @@ from PIL import Image
 
 from zerorev.model import shown
 from zerorev.model.finding import Finding
-from zerorev.model.plan import HolePlan
+from zerorev.model.plan import HolePlan, LostMotion
 from zerorev.report.figures.spin import spin_profile
 from zerorev.report.notebook import ROWS
 
@@ -56,6 +56,17 @@ def test_the_table_says_what_the_plan_says(published):
     assert first == ["position 1", "50", f"{before} → 0", travel, "12.5", "62.5", "no"]
     assert lost[:4] == ["far", "50", "infeasible", "–"]
     assert "plan of 4 holes, KUKA KR 6 R700-2, thesis_drill" in read.text
+
+
+def test_the_lost_motion_is_there_with_what_it_rests_on(published):
+    assert "guesses" not in _Read(published._repr_html_()).text
+    weighed = replace(published.holes[0], lost_motion=LostMotion(0.0000674, 0.0001523))
+    for answer in (weighed, replace(published, holes=(weighed, *published.holes[1:]))):
+        read = _Read(answer._repr_html_())
+        assert "lost motion(swapped) [mm]" in read.rows[0]
+        assert read.rows[1][-2] == "0.067 (0.152)"
+        assert all(len(row) == len(read.rows[0]) for row in read.rows)
+        assert read.text.count("guesses") == read.text.count("a foot on the part") == 1
 
 
 def test_the_picture_is_of_the_first_hole_that_has_a_motion(published):

@@ -14,7 +14,11 @@ from zerorev.cli import main
 from zerorev.cli.common import FINE
 from zerorev.files.io import job_from_text, plan_from_text
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
+from zerorev.motion.loads import lost_motion
+from zerorev.report.scene.load_lines import senses
+from zerorev.report.scene.twist_map import twist_map
 
 pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
@@ -232,6 +236,32 @@ def test_dragging_is_answered_to_the_last_move(ready, job, planned, say):
     assert ready.evaluate("window.sized") == 1, "words that come and go have moved the map"
     half, most = np.percentile(times, (50, 95))
     say(f"pointer to drawn count, position 1: {half:.0f} ms half of them, {most:.0f} ms 95 % of {len(times)}")
+
+
+def test_the_lost_motion_follows_a_drag_and_the_loads_are_drawn_on_demand(ready, job, planned):
+    lost = planned.lost_motion
+    shown, twin = ready.get_by_test_id("lost"), ready.get_by_test_id("lost-twin")
+    expect(shown).to_have_text(f"{lost.at_tip * 1e3:.3f}")
+    expect(twin).to_have_text(f"{lost.twin_at_tip * 1e3:.3f}")
+    expect(ready.get_by_test_id("lost-motion")).to_contain_text("friction, stiffness and gap", ignore_case=True)
+    curves, switch = ready.locator(".zr-tw-load[data-level]"), ready.get_by_test_id("loads")
+    expect(curves).to_have_count(0)
+    expect(switch).to_have_attribute("aria-pressed", "false")
+    switch.click()
+    expect(switch).to_have_attribute("aria-pressed", "true")
+    motion = planned.motion
+    drilling = Drilling(job.robot, job.tool, job.holes[0])
+    turning = senses(drilling, motion.profile, motion.branch)
+    found = twist_map(drilling, motion.branch, corner=float(motion.profile.standoff.min())).load_lines
+    both = sum(any(line.sense in turning[leg][line.joint - 1] for leg in line.legs) for line in found)
+    expect(curves).to_have_count(both)
+    assert 0 < both < len(found)
+    drag_target(ready, -20, 4)
+    by_hand = Profile(motion.profile.standoff, np.deg2rad(spins(ready)))
+    expect(shown).to_have_text(f"{lost_motion(drilling, by_hand, motion.branch) * 1e3:.3f}")
+    ready.mouse.up()
+    switch.click()
+    expect(curves).to_have_count(0)
 
 
 def test_the_keyboard_is_enough(ready, job, planned):

@@ -17,7 +17,7 @@ from oracles.published import POSITIONS
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import HolePlan
+from zerorev.model.plan import HolePlan, LostMotion
 from zerorev.report.words.hole_rows import matching
 from zerorev.web.session import Session
 from zerorev.web.state import answered, opened_job, selected, with_hole, without_hole
@@ -116,6 +116,16 @@ def test_findings_of_other_holes_are_counted(session):
     rows = view._rows(answered(state, lost(session.state.job.holes[2])), {}, None)
     assert "2 other holes have" in view._others(rows, hole.id)
     assert "1 other hole has" in view._others(rows, other.id)
+
+
+def test_the_lost_motion_is_there_with_what_it_rests_on(session):
+    hole = session.state.hole
+    answer = HolePlan(hole, "evaluated", 0.1)
+    assert "lost motion" not in view._words(hole, answer).lower()
+    said = view._words(hole, replace(answer, lost_motion=LostMotion(0.0000674, 0.0001523)))
+    assert "Lost motion at the tip: 0.067 mm, with the legs swapped 0.152 mm." in said
+    assert "are guesses" in said
+    assert "must let the tool turn" in said
 
 
 def test_findings_are_shown_as_text_and_never_as_markup(session):

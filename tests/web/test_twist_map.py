@@ -19,6 +19,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
+from zerorev.motion.loads import lost_motion_of
 from zerorev.report.scene.twist_map import LIMITED, UNREACHED, twist_map
 from zerorev.web.session import Session
 from zerorev.web.state import Steered, answered, opened_job, selected, steered
@@ -172,6 +173,55 @@ def test_a_drag_is_answered_at_once_and_passed_on_later(on_page, session, robot,
         assert component.last("show_motion")["seq"] is None
 
     on_page(exchange)
+
+
+def test_the_lost_motion_of_a_drag_and_of_its_twin_are_shown_at_once(on_page, session, robot, tool):
+    drilling = Drilling(robot, tool, POSITIONS[0].hole)
+
+    async def exchange(component, do):
+        do("grab")
+        for seq, spins in enumerate(((14.16, -5.94, -30.0), (10.0, 0.0, -20.0)), start=1):
+            do("drag", points=points(spins), seq=seq, ms=10.0)
+            profile = Profile.straight(0.05, *np.deg2rad(spins))
+            found = lost_motion_of(drilling, profile, POSITIONS[0].branch)
+            answer = component.last("show_motion")
+            assert answer["lost"] == (f"{found.at_tip * 1e3:.3f}", f"{found.twin_at_tip * 1e3:.3f}")
+            turns = np.diff(drilling.angles(*profile.at(np.linspace(0, 0.05, 50)))[:, POSITIONS[0].branch], axis=0)
+            assert answer["senses"]["plunge"] == tuple(
+                tuple(sorted(set(np.sign(turns[:, i]).astype(int)))) for i in range(6)
+            )
+
+    sent = on_page(exchange).last("show_map")["loads"]
+    found = twist_map(drilling, POSITIONS[0].branch).load_lines
+    assert [(each["joint"], each["sense"], each["level"]) for each in sent] == [
+        (line.joint, line.sense, f"{line.level:.0%}") for line in found
+    ]
+    for each, line in zip(sent, found, strict=True):
+        flat = np.array(each["points"]).reshape(-1, 2)
+        assert flat == pytest.approx(
+            np.column_stack([line.points[:, 0] * 1e3, np.rad2deg(line.points[:, 1])]), abs=1e-3
+        )
+
+
+def test_without_masses_nothing_is_said_of_loads(on_page, session):
+    job = session.state.job
+    session.change(replace(session.state, job=replace(job, robot=replace(job.robot, dynamics=None))))
+
+    async def nothing(component, do):
+        pass
+
+    reported = on_page(nothing)
+    assert reported.last("show_motion")["lost"] is None
+    assert reported.last("show_map")["loads"] == []
+
+
+def test_the_thrust_is_part_of_the_map(on_page, session):
+    async def exchange(component, do):
+        await asyncio.sleep(0.01)
+        session.change(replace(session.state, job=replace(session.state.job, settings=Settings(thrust=100.0))))
+
+    reported = on_page(exchange)
+    assert {each["legs"] for each in reported.last("show_map")["loads"]} == {("plunge",), ("retract",)}
 
 
 def test_a_drag_draws_neither_the_field_nor_the_branches(on_page):

@@ -9,6 +9,7 @@ guessed drives of `nominal_drives`: good to choose between motions, not to state
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -23,7 +24,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import sample_distances
 
-__all__ = ["GRAVITY", "LEVELS", "gears_of", "loads", "lost_motion", "lost_motion_of"]
+__all__ = ["GRAVITY", "LEVELS", "gears_of", "held_at", "loads", "lost_motion", "lost_motion_of", "twins_lost_motion"]
 
 Mask = npt.NDArray[np.bool_]
 GRAVITY = 9.81  # [m/s^2], along -Z of the base: the arm stands on the floor
@@ -72,6 +73,30 @@ def loads(
     return held, lever, sense
 
 
+def held_at(drilling: Drilling, branch: int, standoff: Array, psi: Array, thrust: float = 0.0) -> Array:
+    """The torques that hold links, tool and the thrust of the drill, without friction [N m], shape (N, 6).
+
+    Args:
+        drilling: of a robot with dynamics.
+        branch: 0..7.
+        standoff: s [m], shape (N,).
+        psi: spin [rad], shape (N,).
+        thrust: of the drill [N].
+
+    Returns:
+        NaN rows where the branch does not reach.
+    """
+    bodies = drilling.bodies
+    assert bodies is not None
+    held, sense = np.empty((2, standoff.size, 6))
+    lever = np.empty((standoff.size, 6, 3))
+    still, outwards = np.zeros(standoff.size), np.ones(standoff.size, dtype=bool)  # neither matters to what is held
+    kernels.loads_along(
+        drilling.robot.arm, bodies, drilling.plane, branch, standoff, psi, still, outwards, GRAVITY, held, lever, sense
+    )
+    return np.asarray(held + thrust * (lever @ drilling.hole.direction))
+
+
 def lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> float | None:
     """The lost motion at the tip that a motion is predicted to have [m] (the greatest of the levels of friction).
 
@@ -96,10 +121,8 @@ def lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust: float
     return float(found) if np.isfinite(found) else np.inf
 
 
-def lost_motion_of(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> LostMotion | None:
-    """The lost motion of a motion and of its twin, and where loads change their sign without a reversal.
-
-    None for a robot without dynamics, and where a joint cannot be followed.
+def twins_lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> LostMotion | None:
+    """`lost_motion_of` without its events, which take most of the time.
 
     Args:
         drilling: robot, tool and hole.
@@ -111,8 +134,22 @@ def lost_motion_of(drilling: Drilling, profile: Profile, branch: int, thrust: fl
     if at_tip is None or not np.isfinite(at_tip):
         return None
     twin = lost_motion(drilling, Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy()), branch, thrust)
-    finite = twin if twin is not None and np.isfinite(twin) else None
-    return LostMotion(at_tip, finite, _events(drilling, profile, branch, thrust))
+    return LostMotion(at_tip, twin if twin is not None and np.isfinite(twin) else None)
+
+
+def lost_motion_of(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> LostMotion | None:
+    """The lost motion of a motion and of its twin, and where loads change their sign without a reversal.
+
+    None for a robot without dynamics, and where a joint cannot be followed.
+
+    Args:
+        drilling: robot, tool and hole.
+        profile: the spin along the path.
+        branch: 0..7.
+        thrust: of the drill while it plunges [N].
+    """
+    found = twins_lost_motion(drilling, profile, branch, thrust)
+    return None if found is None else replace(found, events=_events(drilling, profile, branch, thrust))
 
 
 def _events(drilling: Drilling, profile: Profile, branch: int, thrust: float) -> tuple[LostMotionEvent, ...]:

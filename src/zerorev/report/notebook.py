@@ -16,6 +16,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words.hole_rows import hole_row
+from zerorev.report.words.lost_motion import HEADING, PREDICTED, WHERE_IT_HOLDS, lost_motion_cell
 from zerorev.report.words.tables import finding_lines, hole_check, hole_findings
 from zerorev.visible import one_line
 
@@ -23,8 +24,15 @@ __all__ = ["ROWS", "html_of"]
 
 ROWS = 20  # of the table; more holes are counted
 COLUMNS = (
-    "hole", "depth [mm]", "reversals<br>baseline → plan", "travel [deg]", "margin [mm]", "deepest [mm]", "verified",
-)  # fmt: skip
+    "hole",
+    "depth [mm]",
+    "reversals<br>baseline → plan",
+    "travel [deg]",
+    "margin [mm]",
+    "deepest [mm]",
+    "verified",
+)
+LOST = HEADING.replace("\n", "<br>")  # fmt: skip
 RIGHT, LEFT = "text-align: right", "text-align: left"
 PICTURE = "max-width: 100%; width: 800px; background: white"
 
@@ -48,23 +56,28 @@ def html_of(answer: Plan | HolePlan) -> str:
 
 
 def _table(holes: Sequence[HolePlan], T_base_part: Array) -> str:
-    head = "".join(f'<th style="{RIGHT if n else LEFT}">{column}</th>' for n, column in enumerate(COLUMNS))
+    weighed = any(hole.lost_motion is not None for hole in holes[:ROWS])
+    columns = (*COLUMNS[:-1], *([LOST] if weighed else []), COLUMNS[-1])
+    head = "".join(f'<th style="{RIGHT if n else LEFT}">{column}</th>' for n, column in enumerate(columns))
     rows = "".join(
         "<tr>" + "".join(f'<td style="{RIGHT if n else LEFT}">{_text(cell)}</td>' for n, cell in enumerate(cells))
         + "</tr>"
-        for cells in (_cells(hole, T_base_part) for hole in holes[:ROWS])
+        for cells in (_cells(hole, T_base_part, weighed=weighed) for hole in holes[:ROWS])
     )  # fmt: skip
     more = f"<p>and {len(holes) - ROWS:,} more</p>" if len(holes) > ROWS else ""
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}"
+    said = f"<p>Lost motion: {_text(PREDICTED)}. {_text(WHERE_IT_HOLDS)}</p>" if weighed else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}{said}"
 
 
-def _cells(hole: HolePlan, T_base_part: Array) -> Iterable[str]:
+def _cells(hole: HolePlan, T_base_part: Array, *, weighed: bool) -> Iterable[str]:
     row = hole_row(hole.hole, hole, T_base_part)
     deepest = None if hole.deepest is None else hole.deepest * 1e3
     yield row.id
     yield f"{row.depth:g}"
     yield "infeasible" if row.after is None else f"{'?' if row.before is None else row.before} → {row.after}"
     yield from ("–" if value is None else f"{value:.1f}" for value in (row.travel, row.margin, deepest))
+    if weighed:
+        yield lost_motion_cell(hole.lost_motion)
     yield "–" if row.after is None else hole_check(hole).plain
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from zerorev.errors import InputError
+from zerorev.model.plan import LostMotion
 from zerorev.report.scene import replay
 from zerorev.report.scene.replay import replay_page
 
@@ -31,6 +32,18 @@ def test_it_holds_the_holes_and_what_is_known_of_them(published):
     figures = {name: (planned, constant) for name, planned, constant in holes[0]["figures"]}
     assert figures["reversals"] == ("0", "6")
     assert figures["travel [deg]"] == ("107.1", "52.5")  # the thesis
+
+
+def test_the_lost_motion_is_there_with_what_it_rests_on(published):
+    assert data_of(replay_page(published))["note"] == ""
+    weighed = replace(published.holes[0], lost_motion=LostMotion(0.0000674, 0.0001523))
+    data = data_of(replay_page(replace(published, holes=(weighed, *published.holes[1:]))))
+    figures, others = ({name: value for name, value, _ in hole["figures"]} for hole in data["holes"][:2])
+    assert figures["lost motion at the tip [mm]"] == "0.067"
+    assert figures["... with the legs swapped [mm]"] == "0.152"
+    assert not any("lost" in name for name in others)
+    assert "are guesses" in data["note"]
+    assert "must let the tool turn" in data["note"]
 
 
 def test_only_some_holes(published):

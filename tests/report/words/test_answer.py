@@ -9,6 +9,7 @@ import pytest
 from rich.console import Console
 
 from zerorev.model.job import Settings
+from zerorev.model.plan import LostMotion
 from zerorev.report.words.answer import ROWS, Shown, how_deep
 
 
@@ -31,6 +32,15 @@ def test_few_holes_have_a_row_each(published):
     shown = text(Shown(published, copies(published, ROWS)))
     assert sum("6 → 0" in line for line in shown.splitlines()) == ROWS
     assert " 60.0 " in shown
+
+
+def test_guesses_are_called_guesses(published):
+    assert "guesses" not in text(Shown(published, published.holes))
+    first = replace(published.holes[0], lost_motion=LostMotion(0.0000674, 0.0001523))
+    assert text(Shown(published, [first])).count("gap of the gears are guesses") == 1
+    many = [replace(each, lost_motion=LostMotion(n * 1e-6, None)) for n, each in enumerate(copies(published, ROWS + 1))]
+    row = next(line.split() for line in text(Shown(published, many)).splitlines() if "lost motion [mm]" in line)
+    assert row[-5:] == ["0", "(H0)", "0.03", "0.06", f"(H{ROWS})"]
 
 
 def test_many_holes_are_summarised(published):

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from zerorev.files.io import read_robot
 from zerorev.model.finding import Finding
-from zerorev.model.plan import Verification
+from zerorev.model.plan import LostMotion, Verification
 from zerorev.report.words import tables
 
 
@@ -51,6 +51,19 @@ def test_where_all_joints_reverse_there_is_no_slowest(make_plan):
     plan = make_plan(psi_deg=(30, -40, 35))
     assert plan.holes[0].score.reversals_per_joint == (1,) * 6
     assert shown(tables.plan_table(plan)).rstrip().splitlines()[-1].split()[-2] == "–"
+
+
+def test_the_lost_motion_has_a_column_where_there_is_one(published):
+    assert "lost motion" not in shown(tables.plan_table(published))
+    first = replace(published.holes[0], lost_motion=LostMotion(0.0000674, 0.0001523))
+    second = replace(published.holes[1], lost_motion=LostMotion(0.00004, None))
+    plan = replace(published, holes=(first, second, *published.holes[2:]))
+    text = shown(tables.plan_table(plan))
+    assert "lost motion" in text
+    rows = {line.split()[0] + line.split()[1]: line for line in text.splitlines() if "→ 0" in line}
+    assert "0.067 (0.152)" in rows["position1"]
+    assert "0.040 (–)" in rows["position2"]
+    assert "–" in rows["position3"]
 
 
 class TestFindings:

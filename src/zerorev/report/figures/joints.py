@@ -10,17 +10,19 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import Event, HolePlan, Motion, Plan
+from zerorev.model.plan import Event, HolePlan, LostMotionEvent, Motion, Plan
 from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
+from zerorev.report.figures.loads import CROSSED
 from zerorev.report.scene.joint_range import joint_range
 
 __all__ = ["REVERSAL", "joint_angles", "path_distance"]
 
 SAMPLES = 600
+CROSSES = "its load changes sign"
 REVERSAL = {"marker": "X", "markersize": 8.0, "markeredgecolor": "white", "markeredgewidth": 0.9, "linestyle": "none"}
 
 
@@ -56,11 +58,15 @@ def joint_angles(plan: Plan, hole: HolePlan | str | None = None) -> Figure:
     grid = figure.subplots(2, 3, sharex=True)
     events = hole.score.events if hole.score else None
     planned = Curve(*_angles(plan, hole, motion, motion.profile), events)
+    loads = hole.lost_motion.events if hole.lost_motion else ()
     constant = Profile(motion.profile.standoff, np.full_like(motion.profile.psi, motion.profile.psi[0]))
     found = evaluated(Drilling(plan.robot, plan.tool, hole.hole), constant, motion.branch, plan.settings)
     baseline = Curve(*_angles(plan, hole, motion, constant), found.score.events if found.score else None)
     for i, axes in enumerate(grid.flat):
         _one_joint(axes, plan, motion.profile, i, planned, baseline)
+        at = [path_distance(motion.profile, event) for event in loads if event.joint == i + 1]
+        axes.plot(at, np.interp(at, planned.distance, planned.joints[:, i]), zorder=4, **CROSSED,
+                  markeredgecolor=style.JOINT_COLOURS[i], label=f"{plan.robot.joint_names[i]} loads")  # fmt: skip
         if i >= 3:
             style.label(axes, x="path distance [mm]")
         if i % 3 == 0:
@@ -75,6 +81,7 @@ def joint_angles(plan: Plan, hole: HolePlan | str | None = None) -> Figure:
                    label=f"baseline: constant spin {spin} deg{doubt}"),
             Line2D([], [], color=style.INK, label="reversal of the joint", **REVERSAL),  # type: ignore[arg-type]
             Line2D([], [], color=style.MUTED, linewidth=0.9, linestyle=":", label="target"),
+            *([Line2D([], [], markeredgecolor=style.INK, label=CROSSES, **CROSSED)] if loads else []),
         ],
         columns=4,
     )  # fmt: skip
@@ -90,7 +97,7 @@ def _angles(plan: Plan, hole: HolePlan, motion: Motion, profile: Profile) -> tup
     return distance * 1e3, np.rad2deg(joints + turns)
 
 
-def path_distance(profile: Profile, event: Event) -> float:
+def path_distance(profile: Profile, event: Event | LostMotionEvent) -> float:
     """Where on the path an event lies [mm]."""
     corner = profile.standoff[profile.corner]
     to_corner = float(profile.standoff[0] - corner)

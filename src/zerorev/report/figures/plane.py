@@ -17,6 +17,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
+from zerorev.report.figures.loads import draw_loads
 from zerorev.report.scene.field import Field, field
 
 __all__ = ["twist_plane"]
@@ -40,7 +41,8 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     """Spin [deg] over the path from start to target and back out, the field on both sides the same.
 
     Behind the motion: the twist spread [deg/mm], which says where zero reversals are cheap; where the branch does not
-    reach or a joint leaves its limits; and the lines on which spin does not move a joint.
+    reach or a joint leaves its limits; the lines on which spin does not move a joint; and, where the robot's masses are
+    known, thin lines on which the load of a joint changes its sign, as the joints turn on either leg.
 
     Args:
         plan: whose robot and tool move.
@@ -69,6 +71,7 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     crossed = _sign_changes(axes, plan, x, y, patch)
     _legs(axes, plan, hole, motion)
     _axes(axes, x, y, float(corner) * 1e3)
+    loaded = draw_loads(axes, plan, hole, patch.standoff, patch.psi)
     bar = figure.colorbar(image, ax=axes, pad=0.02 if not crossed else 0.035, aspect=38, extend="max")
     bar.set_label("twist spread [deg/mm]: the least bracket for zero reversals", size=9.5, color=style.INK)
     bar.set_ticks([tick for tick in TICKS if image.norm.vmin <= tick <= CAP], minor=False)
@@ -76,7 +79,7 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_visible(False)
-    style.legend_below(figure, _handles(plan, hole, patch, crossed, limited), 4, ax)
+    style.legend_below(figure, _handles(plan, hole, patch, crossed, limited) + loaded, 4, ax)
     return figure
 
 

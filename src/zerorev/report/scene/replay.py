@@ -20,6 +20,7 @@ from zerorev.model.plan import HolePlan, Plan
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.cell_data import SAMPLES, arm_data, holes_data, motion_data
 from zerorev.report.scene.urdf_meshes import Mesh
+from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings, slowest
 
 __all__ = ["MOST_HOLES", "replay_page"]
@@ -48,6 +49,7 @@ def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[S
         "arm": arm_data(plan.robot, plan.tool, meshes),
         "scene": holes_data(holes, plan.T_base_part, {answer.hole.id: answer for answer in chosen}),
         "holes": [_hole(plan, answer, samples) for answer in chosen],
+        "note": f"Lost motion: {GUESSED} {WHERE_IT_HOLDS}" if any(answer.lost_motion for answer in chosen) else "",
     }
     parts = {
         "title": escape(f"Replay of {plan.name}"),
@@ -112,6 +114,10 @@ def _figures(plan: Plan, answer: HolePlan) -> list[list[str]]:
     rows.append(["spin: start, target, end [deg]", ", ".join(_number(deg(spin), 1) for spin in spins), ""])
     if answer.deepest is not None:
         rows.append(["deepest without reversal [mm]", _number(mm(answer.deepest), 1), ""])
+    if answer.lost_motion is not None:
+        here, swapped = lost_motion_words(answer.lost_motion)
+        rows.append(["lost motion at the tip [mm]", here, ""])
+        rows.append(["... with the legs swapped [mm]", swapped, ""])
     verified = answer.verified
     rows.append(["checked", "not yet" if verified is None else "passed" if verified.passed else "FAILED", ""])
     if answer.certificate is not None:

@@ -19,6 +19,7 @@ from zerorev.motion.criteria import from_singular
 from zerorev.motion.critical import kappa_of, spread_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.report.scene.field import over_limits, stuck_joints
+from zerorev.report.scene.load_lines import LoadLine, load_lines
 
 __all__ = ["LIMITED", "NEAR_SINGULAR", "OPEN", "UNREACHED", "Region", "SignLine", "TwistMap", "twist_map"]
 
@@ -78,6 +79,7 @@ class TwistMap:
         regions: from mild to grave; each holds the graver ones.
         lines: in the envelope those of each branch where it is the one that is shown.
         stuck: joints (1..6) that spin moves nowhere.
+        load_lines: where loads change their sign; none in the envelope, nor for a robot whose masses are not known.
     """
 
     branch: int | None
@@ -91,9 +93,17 @@ class TwistMap:
     regions: tuple[Region, ...]
     lines: tuple[SignLine, ...]
     stuck: tuple[int, ...]
+    load_lines: tuple[LoadLine, ...]
 
 
-def twist_map(drilling: Drilling, branch: int | None, corner: float = 0.0, shape: tuple[int, int] = SHAPE) -> TwistMap:
+def twist_map(
+    drilling: Drilling,
+    branch: int | None,
+    corner: float = 0.0,
+    shape: tuple[int, int] = SHAPE,
+    *,
+    thrust: float = 0.0,
+) -> TwistMap:
     """The twist map of a hole; some fifty milliseconds.
 
     Args:
@@ -101,6 +111,7 @@ def twist_map(drilling: Drilling, branch: int | None, corner: float = 0.0, shape
         branch: 0..7, or None for the envelope of all.
         corner: stand-off of the motion's corner [m], below 0 where it is placed deeper.
         shape: how many stand-offs and spins.
+        thrust: of the drill while it plunges [N].
     """
     here = _Place(drilling, np.arange(8) if branch is None else np.array([branch]))
     standoff, finely = np.linspace(corner, drilling.hole.depth, shape[0]), np.linspace(-np.pi, np.pi, 2 * shape[1] - 1)
@@ -121,6 +132,7 @@ def twist_map(drilling: Drilling, branch: int | None, corner: float = 0.0, shape
     return TwistMap(
         branch, standoff, psi, shown, zone, limited, singular, np.take_along_axis(spread, best, -1)[..., 0],
         _regions(here, standoff, psi, zone), tuple(lines), tuple(i + 1 for i in stuck_joints(theta_psi)),
+        () if branch is None else load_lines(drilling, branch, standoff, psi, thrust),
     )  # fmt: skip
 
 

@@ -10,11 +10,15 @@ import numpy as np
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.loads import twins_lost_motion
+from zerorev.report.scene.load_lines import senses
 from zerorev.report.scene.motion_look import Look
 from zerorev.report.scene.palette import DASHES, JOINT_COLOURS, JOINT_INKS
 from zerorev.report.scene.twist_map import LIMITED, NEAR_SINGULAR, UNREACHED, TwistMap
+from zerorev.report.words.lost_motion import lost_motion_words
 
-__all__ = ["map_data", "motion_data"]
+__all__ = ["loads_data", "map_data", "motion_data"]
 
 FLOOR, CAP = 0.3, 10.0  # [deg/mm] twist spreads that the shades tell apart
 
@@ -51,6 +55,25 @@ def motion_data(robot: Robot, profile: Profile, seen: Look) -> dict[str, Any]:
         "margin": "" if seen.margin is None else _rate(seen.margin),
         "limit": f"{deg(score.limit_distance.min()):.1f}" if score else "",
     }  # fmt: skip
+
+
+def loads_data(drilling: Drilling, profile: Profile, branch: int, thrust: float) -> dict[str, Any]:
+    """What the gears make of a motion, beside `motion_data`: microseconds, so that it follows a drag, too.
+
+    Args:
+        drilling: robot, tool and hole.
+        profile: the spin along the path.
+        branch: 0..7.
+        thrust: of the drill while it plunges [N].
+
+    Returns:
+        `lost`: the predicted lost motion at the tip in words, and with the legs swapped; None for a robot without
+        dynamics. `senses`: which ways the joints turn on either leg, or None.
+    """
+    if drilling.robot.dynamics is None:
+        return {"lost": None, "senses": None}
+    lost = twins_lost_motion(drilling, profile, branch, thrust)
+    return {"lost": lost_motion_words(lost), "senses": None if lost is None else senses(drilling, profile, branch)}
 
 
 def _joint_title(name: str, i: int, seen: Look) -> str:
@@ -104,6 +127,16 @@ def map_data(robot: Robot, found: TwistMap) -> dict[str, Any]:
             for region in found.regions
         ],
         "lines": [{"joint": line.joint, "points": _flat(line.points, found)} for line in found.lines],
+        "loads": [
+            {
+                "joint": line.joint,
+                "sense": line.sense,
+                "level": f"{line.level:.0%}",
+                "legs": line.legs,
+                "points": _flat(line.points, found),
+            }
+            for line in found.load_lines
+        ],
         "joints": [
             {"name": name, "colour": JOINT_COLOURS[i], "ink": JOINT_INKS[i], "dash": _dash(i)}
             for i, name in enumerate(robot.joint_names)

@@ -15,6 +15,7 @@ from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words import tables, terminal
+from zerorev.report.words.lost_motion import PREDICTED
 
 __all__ = ["ROWS", "Shown", "how_deep"]
 
@@ -39,9 +40,9 @@ class Shown:
         self._plan, self._rows = plan, list[HolePlan]()
         self._findings: list[Finding] = list(plan.findings)
         self._status, self._reversals = Counter[str](), Counter[int]()
-        self._proven, self._bounded = 0, 0
+        self._proven, self._bounded, self._weighed = 0, 0, False
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
-                                                      "deepest beyond depth [mm]",
+                                                      "deepest beyond depth [mm]", "lost motion [mm]",
                                                       "certified within [mm]")}  # fmt: skip
         self.sound, self.certified = not any(finding.level == "error" for finding in plan.findings), True
         for answer in answers:
@@ -54,6 +55,7 @@ class Shown:
         self.sound &= answer.verified is not None and answer.verified.passed
         self.sound &= not any(finding.level == "error" for finding in answer.findings)
         self.certified &= answer.certificate is not None and answer.certificate.verdict == "certified"
+        self._weighed |= answer.lost_motion is not None
         self._status[answer.status] += 1
         self._bounded += answer.optimality is not None
         self._proven += answer.optimality is not None and answer.optimality.proven
@@ -69,6 +71,8 @@ class Shown:
             yield "travel [deg]", float(np.rad2deg(answer.score.travel))
         if slow := tables.slowest(answer.score, self._plan.settings):
             yield "slowest joint [deg/mm]", float(np.rad2deg(slow[0]) / 1e3)
+        if answer.lost_motion is not None:
+            yield "lost motion [mm]", answer.lost_motion.at_tip * 1e3
         if answer.certified_within is not None:
             yield "certified within [mm]", answer.certified_within.position * 1e3
         if answer.deepest is not None:
@@ -105,6 +109,8 @@ class Shown:
             lines.append(Text(f"optimum of straight legs: proven for {self._proven} of {self._bounded} holes"))
         if self._figures["deepest [mm]"].count:
             lines.append(Text(f"deepest without a reversal: {how_deep(self._plan.settings)}"))
+        if self._weighed:
+            lines.append(Text(f"lost motion: {PREDICTED}"))
         return lines + tables.finding_lines(self._findings)
 
 

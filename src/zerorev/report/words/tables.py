@@ -15,6 +15,7 @@ from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Score, named_holes
 from zerorev.model.robot import Robot
+from zerorev.report.words.lost_motion import HEADING, lost_motion_cell
 
 __all__ = [
     "finding_lines",
@@ -35,7 +36,11 @@ MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding
 
 
 def plan_table(plan: Plan) -> Table:
-    """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, outcome of the check."""
+    """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, outcome of the check.
+
+    And the predicted lost motion, where there is one at all.
+    """
+    weighed = any(hole.lost_motion is not None for hole in plan.holes)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column(Text("hole"), no_wrap=True)
     table.add_column(Text("reversals\nbaseline → plan"), justify="right")
@@ -44,9 +49,13 @@ def plan_table(plan: Plan) -> Table:
     table.add_column(Text("spins\n[deg]"), justify="right")
     table.add_column(Text("slowest joint\n[deg/mm]"), justify="right")
     table.add_column(Text("deepest\n[mm]"), justify="right")
+    if weighed:
+        table.add_column(Text(HEADING), justify="right")
     table.add_column(Text("verified"))
     for hole in plan.holes:
-        table.add_row(Text(hole.hole.id), *_cells(plan, hole))
+        *cells, verdict = _cells(plan, hole)
+        lost = [Text(lost_motion_cell(hole.lost_motion))] if weighed else []
+        table.add_row(Text(hole.hole.id), *cells, *lost, verdict)
     return table
 
 

@@ -5,6 +5,8 @@ const LATE = 1000; // [ms] after which an answer is waited for no longer
 const STEPS = { plain: 1, shift: 10, fine: 0.1 }; // [deg] of an arrow key
 const ALONG = { plain: 1, shift: 5, fine: 0.1 }; // [mm]
 const SETTLED = 300; // [ms] after the last key the motion counts as let go
+const LOST = "predicted deviation of the tip across the drill axis that the gears cause, half a stroke about the turn; friction, stiffness and gap are guesses";
+const LOADS = "where a leg crosses such a curve, the gear crosses its lost motion without a reversal; drawn for the way each joint turns in this motion, and for the share of the nominal friction that is guessed to lie behind the gear";
 const LEAST_HALF = 10; // [deg] shown on either side of the middle, at the closest
 
 export default {
@@ -12,6 +14,7 @@ export default {
     <section class="zr-tw" data-testid="twist-map" aria-label="Twist map">
       <div class="zr-tw-tools">
         <button type="button" :class="{ away: !edited }" :disabled="!edited" @click="$emit('let_go')" data-testid="let-go" title="give up the motion by hand">back to the plan</button>
+        <button type="button" v-if="loaded" :aria-pressed="String(loads)" @click="showLoads" data-testid="loads" :title="LOADS">loads</button>
         <label>branch <select aria-label="branch" data-testid="branch" :value="choice" :disabled="!branches.length" @change="choose">
           <option v-for="each in branches" :key="each.value" :value="each.value">{{ each.label }}</option></select></label>
         <span class="zr-tw-zoom" role="group" aria-label="spins that are shown">
@@ -30,6 +33,7 @@ export default {
           <div class="zr-tw-number" title="sum over the joints of the angle moved">travel <b data-testid="travel">{{ travel || "–" }}</b> deg</div>
           <div class="zr-tw-number" :class="{ mild: why }" title="least rate of the joints that do not reverse">slowest <b data-testid="margin">{{ margin || "–" }}</b> deg/mm</div>
           <div class="zr-tw-number" title="least distance of a joint to a limit">to a limit <b data-testid="limit">{{ limit || "–" }}</b> deg</div>
+          <div class="zr-tw-number" v-if="lost" :title="LOST">lost motion <b data-testid="lost">{{ lost[0] }}</b> mm, legs swapped <b data-testid="lost-twin">{{ lost[1] }}</b> mm</div>
         </div>
       </div>
       <div class="zr-tw-plot" ref="plot">
@@ -44,6 +48,7 @@ export default {
         <ul class="zr-tw-legend" :class="{ away: readout }" aria-label="legend">
           <li v-for="zone in zones" :key="zone.name"><i class="zr-tw-swatch" :class="'zr-tw-' + zone.name + '-swatch'"></i>{{ zone.text }}</li>
           <li v-if="lined"><svg width="22" height="6" aria-hidden="true"><line x1="0" x2="22" y1="3" y2="3" stroke="currentColor" stroke-width="2" stroke-dasharray="6 2"/></svg>spin does not move a joint</li>
+          <li v-if="loads && loaded" :title="LOADS"><svg width="22" height="6" aria-hidden="true"><line x1="0" x2="22" y1="3" y2="3" stroke="currentColor" class="zr-tw-load"/></svg>a joint’s load changes its sign (share of its friction)</li>
           <li v-if="stuck.length">spin never moves {{ stuck.join(", ") }}</li>
           <li v-if="scale"><i class="zr-tw-scale"></i>twist spread {{ scale }} deg/mm</li>
         </ul>
@@ -56,6 +61,7 @@ export default {
     return {
       count: "–", joints: [], travel: "", margin: "", limit: "", why: "", runs: true, edited: false, grade: "",
       choice: "", branches: [], readout: "", zones: [], lined: false, stuck: [], scale: "", loading: true,
+      lost: null, loads: false, loaded: false, LOST, LOADS,
       cover: "the map is being drawn …",
     };
   },
@@ -109,6 +115,7 @@ export default {
         this.zones = data.legend.map(({ zone, text }) => ({ name: zones[zone], text }));
         this.lined = data.lines.length > 0;
         this.stuck = data.stuck;
+        this.loaded = data.loads.length > 0;
         this.scale = data.spread_range.join("–");
         this.choice = data.branch === null ? "all" : String(data.branch);
       }
@@ -155,6 +162,13 @@ export default {
       this.limit = data.limit;
       this.why = data.why;
       this.edited = data.edited;
+      this.lost = data.lost;
+      this.plane.turning(data.senses ?? null);
+    },
+
+    showLoads() {
+      this.loads = this.plane.loaded = !this.loads;
+      this.plane.drawLoads();
     },
 
     drawn({ seq, asked }) {

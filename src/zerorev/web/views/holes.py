@@ -14,6 +14,7 @@ from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan
 from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching
+from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, without_hole
@@ -239,12 +240,22 @@ def _words(hole: Hole | None, answer: HolePlan | None) -> str:
         return '<p class="zr-muted">not planned yet</p>'
     found = sorted(hole_findings(answer), key=lambda finding: list(MARKS).index(finding.level))
     if not found:
-        return '<p class="zr-muted">no findings for this hole</p>'
-    return "".join(
+        return f'<p class="zr-muted">no findings for this hole</p>{_lost_motion(answer)}'
+    lines = "".join(
         f'<p><span class="zr-level zr-{finding.level}" title="{finding.level}">{MARKS[finding.level]}</span>'
         f"{escape(finding.message)}</p>"
         for finding in found
     )
+    return lines + _lost_motion(answer)
+
+
+def _lost_motion(answer: HolePlan) -> str:
+    """What the gears are predicted to do to the tip, and how much that says."""
+    if answer.lost_motion is None:
+        return ""
+    here, swapped = lost_motion_words(answer.lost_motion)
+    figures = f"Lost motion at the tip: {here} mm, with the legs swapped {swapped} mm."
+    return f'<p class="zr-muted" data-testid="lost-motion">{figures} {GUESSED} {WHERE_IT_HOLDS}</p>'
 
 
 def _others(rows: Mapping[str, HoleRow], chosen: str | None) -> str:

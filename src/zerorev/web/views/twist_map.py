@@ -22,7 +22,8 @@ from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene import motion_look
 from zerorev.report.scene import twist_map as maps
-from zerorev.report.scene.twist_map_data import map_data, motion_data
+from zerorev.report.scene.twist_map_data import loads_data, map_data, motion_data
+from zerorev.report.words.lost_motion import lost_motion_words
 from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import State, Steered, shown, steered
@@ -62,6 +63,7 @@ class _Wanted(NamedTuple):
     hole: Hole
     branch: int | None
     corner: float
+    thrust: float
 
     @property
     def drilling(self) -> Drilling:
@@ -71,7 +73,7 @@ class _Wanted(NamedTuple):
     def same(self, other: _Wanted) -> bool:
         """Whether it is the same map: robots, tools and holes are not compared number by number."""
         things = all(a is b for a, b in zip(self[:3], other[:3], strict=True))
-        return things and (self.branch, self.corner) == (other.branch, other.corner)
+        return things and self[3:] == other[3:]
 
 
 class _TwistMap:
@@ -226,14 +228,14 @@ class _TwistMap:
             self.element.run_method("show_motion", {**_empty(state), "seq": seq, "fit": fit})
             return
         job, hole = state.job, state.hole
-        seen = motion_look.look(Drilling(job.robot, job.tool, hole), motion.profile, motion.branch, job.settings)
+        drilling = Drilling(job.robot, job.tool, hole)
+        seen = motion_look.look(drilling, motion.profile, motion.branch, job.settings)
         data = motion_data(job.robot, motion.profile, seen)
+        data |= loads_data(drilling, motion.profile, motion.branch, job.settings.thrust)
         data |= {"seq": seq, "fit": fit, "edited": self.pending is not None or state.steered is not None}
         if seq is None:
             held = motion_look.held(motion.profile)
-            data["baseline"] = motion_look.look(
-                Drilling(job.robot, job.tool, hole), held, motion.branch, job.settings
-            ).reversals
+            data["baseline"] = motion_look.look(drilling, held, motion.branch, job.settings).reversals
         self.element.run_method("show_motion", data)
 
     def show_map(self) -> None:
@@ -243,7 +245,7 @@ class _TwistMap:
             self.element.run_method("show_map", None)
             return
         corner = float(self.motion.profile.standoff.min()) if self.motion else state.job.settings.corner
-        wanted = _Wanted(state.job.robot, state.job.tool, state.hole, self.branch, corner)
+        wanted = _Wanted(state.job.robot, state.job.tool, state.hole, self.branch, corner, state.job.settings.thrust)
         if self.drawn is not None and wanted.same(self.drawn):
             return
         self.drawn = wanted
@@ -255,7 +257,9 @@ class _TwistMap:
         async with self.drawing:
             if wanted is not self.drawn:
                 return
-            found = await aside(partial(maps.twist_map, wanted.drilling, wanted.branch, wanted.corner))
+            found = await aside(
+                partial(maps.twist_map, wanted.drilling, wanted.branch, wanted.corner, thrust=wanted.thrust)
+            )
         if wanted is self.drawn:
             self.element.run_method("show_map", map_data(wanted.robot, found))
 
@@ -288,7 +292,9 @@ def _empty(state: State) -> dict[str, Any]:
         why = why or "no motion drills this hole"
     else:
         why = "this hole is not planned yet" if state.hole else ""
+    weighed = state.job is not None and state.job.robot.dynamics is not None
     return {
         "points": [], "runs": answer is None, "why": why, "faults": [], "marks": [], "reversals": None, "joints": [],
-        "travel": "", "margin": "", "limit": "", "edited": False,
+        "travel": "", "margin": "", "limit": "", "edited": False, "lost": lost_motion_words(None) if weighed else None,
+        "senses": None,
     }  # fmt: skip

@@ -28,11 +28,11 @@ export function show(page) {
     list.value = i;
     cell.showScene({ selected: hole.id });
     cell.showMotion(hole.motion);
-    page.getElementById("figures").replaceChildren(...figures(hole));
+    page.getElementById("figures").replaceChildren(...figures(hole, data.note));
   }
 }
 
-function figures(hole) {
+function figures(hole, note) {
   const row = ([name, planned, constant]) =>
     element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, planned), element("td", {}, constant));
   const parts = [
@@ -44,5 +44,6 @@ function figures(hole) {
   if (hole.findings.length)
     parts.push(element("ul", {}, ...hole.findings.map(([level, message]) =>
       element("li", {}, element("b", { class: TONES[level] }, level), message))));
+  if (note) parts.push(element("p", { class: "note", "data-testid": "replay-note" }, note));
   return parts;
 }

@@ -6,9 +6,19 @@ const TURN = 360;
 const ZONES = ["open", "near-singular", "over a joint limit", "out of reach"];
 const SINGULAR = ["shoulder", "elbow", "wrist"];
 const CLASSES = ["", "near", "limited", "unreached"];
+const NAME = { width: 52, height: 13 }; // [px]
 let made = 0;
 
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+
+/** The point of a curve [distance, spin, ...] that is nearest to a distance. */
+function nearest(points, distance) {
+  let best = 0;
+  for (let n = 0; n < points.length; n += 2) {
+    if (Math.abs(points[n] - distance) < Math.abs(points[best] - distance)) best = n;
+  }
+  return [points[best], points[best + 1]];
+}
 
 export class Plane {
   constructor(root, canvas) {
@@ -37,6 +47,9 @@ export class Plane {
     this.inside = svg(root, "g", { "clip-path": `url(#${this.key}-clip)` });
     this.zones = svg(this.inside, "g");
     this.lines = svg(this.inside, "g");
+    this.loads = svg(this.inside, "g");
+    this.loaded = false; // whether they are drawn
+    this.senses = null; // which ways the joints of the motion turn, by leg; null: there is no motion
     this.clipped = `url(#${this.key}-clip)`;
     this.axes = svg(root, "g", { class: "zr-tw-axes", "aria-hidden": "true" });
   }
@@ -100,6 +113,7 @@ export class Plane {
       this.drawZones();
       this.drawLines();
     }
+    this.drawLoads();
     this.drawAxes();
   }
 
@@ -163,10 +177,10 @@ export class Plane {
   }
 
   /** The path of curves [distance, spin, ...], on both sides of the target and in every turn that is shown. */
-  path(curves, close) {
+  path(curves, close, sides = [1, -1]) {
     let d = "";
     for (const turn of this.turns) {
-      for (const side of [1, -1]) {
+      for (const side of sides) {
         for (const points of curves) {
           for (let n = 0; n < points.length; n += 2) {
             const x = this.x(side * points[n]).toFixed(1);
@@ -215,6 +229,53 @@ export class Plane {
       svg(this.axes, "text", { x: right + 6, y: places[n] + 4, class: "zr-tw-joint", "data-joint": joint.name,
         style: `--colour: ${joint.colour}; --ink: ${joint.ink}` }, joint.name);
     });
+  }
+
+  /** The joints of the motion turn otherwise than before: other curves are those of their loads. */
+  turning(senses) {
+    if (JSON.stringify(senses) === JSON.stringify(this.senses)) return;
+    this.senses = senses;
+    this.drawLoads();
+  }
+
+  /** Where the loads change their sign, on the legs on which the joints turn that way. */
+  drawLoads() {
+    this.loads.replaceChildren();
+    if (!this.data || !this.loaded) return;
+    const names = [];
+    for (const line of this.data.loads) {
+      const legs = line.legs.filter((leg) => !this.senses || this.senses[leg][line.joint - 1].includes(line.sense));
+      if (!legs.length) continue;
+      const joint = this.data.joints[line.joint - 1];
+      const sides = legs.map((leg) => (leg === "plunge" ? -1 : 1));
+      const d = this.path([line.points], false, sides);
+      svg(this.loads, "path", { d, class: "zr-tw-load-casing" });
+      svg(this.loads, "path", { d, class: "zr-tw-load", stroke: joint.colour, "data-joint": joint.name, "data-level": line.level });
+      names.push({ line, joint, sides });
+    }
+    const taken = [];
+    names.forEach((each) => this.nameLoad(each, taken));
+  }
+
+  /** Joint and share of friction, on the curve, in the first place with room. */
+  nameLoad({ line, joint, sides }, taken) {
+    const text = `${joint.name} ${line.level}`;
+    const room = (other) => (other.text === text ? 0.4 * this.innerWidth : NAME.width); // once along a curve in pieces
+    for (const turn of this.turns) {
+      for (const side of sides) {
+        for (const share of [0.7, 0.4, 0.95, 0.15]) {
+          const [distance, psi] = nearest(line.points, share * this.reach);
+          const [x, y] = [this.x(side * distance), this.y(psi + turn) + 4];
+          const other = taken.find((each) => Math.abs(each.x - x) < room(each) && Math.abs(each.y - y) < NAME.height);
+          if (other && other.text !== text) continue;
+          if (other) break;
+          taken.push({ x, y, text });
+          svg(this.loads, "text", { x, y, class: "zr-tw-load-name", "text-anchor": "middle",
+            style: `--colour: ${joint.colour}; --ink: ${joint.ink}` }, text);
+          break;
+        }
+      }
+    }
   }
 
   drawAxes() {
