@@ -13,7 +13,9 @@ from zerorev.cell.parameters import drawn
 from zerorev.cell.reference import Manner
 from zerorev.cli import main
 from zerorev.errors import InputError
+from zerorev.files.cell_file import write_cell
 from zerorev.files.io import write_plan
+from zerorev.model.ranges import RANGES, Cell, Conditioning
 from zerorev.workers import Machines
 
 THESIS = Manner(feed=0.2, corner=10e-3)
@@ -127,6 +129,22 @@ class TestCommand:
         assert "resuming after 2 of 3 holes" in again.err
         assert main([*arguments, "--seed", "1"]) == 2
         assert "there is another study" in capsys.readouterr().err
+
+    def test_what_is_known_of_the_arm(self, plan_file, recorded, tmp_path, capsys):
+        """Ranges of a cell file, and only the sets near what was measured; one of another robot is refused."""
+        cell = Cell({"gap": replace(RANGES["gap"], low=0.9, high=1.1, nominal=1.0)},
+                    Conditioning(recorded, 0.2, 10e-3), "kuka_kr6_r700_2")  # fmt: skip
+        write_cell(cell, tmp_path / "cell.yaml")
+        arguments = ["simulate", str(plan_file), "--sets", "20", "--feed-mm-s", "100", "--json", "--cell"]
+        assert main([*arguments, str(tmp_path / "cell.yaml")]) == 0
+        out, err = capsys.readouterr()
+        found = json.loads(out)
+        assert found["cell"] == "cell.yaml"
+        assert 0 < found["sets"] < 20
+        assert f"{found['sets']} of 20 sets have baselines near those that were measured" in err
+        write_cell(replace(cell, robot="yaskawa_gp8"), tmp_path / "other.yaml")
+        assert main([*arguments, str(tmp_path / "other.yaml")]) == 2
+        assert "is of the robot yaskawa_gp8" in capsys.readouterr().err
 
     def test_draws_pictures(self, plan_file, tmp_path, capsys):
         assert main(["simulate", str(plan_file), "--sets", "3", "--feed-mm-s", "100", "--figures", str(tmp_path)]) == 0

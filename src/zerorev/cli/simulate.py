@@ -11,6 +11,10 @@ from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.cell.ensemble import HoleStudy
+    from zerorev.cell.parameters import ParameterSet
+    from zerorev.model.plan import Plan
+    from zerorev.model.ranges import Cell
+    from zerorev.workers import Machines
 
 __all__ = ["simulate"]
 
@@ -20,6 +24,7 @@ def simulate(
     plan: Path,
     /,
     *,
+    cell: Path | None = None,
     sets: Whole = 300,
     seed: Whole = 0,
     feed_mm_s: float | None = None,
@@ -41,7 +46,9 @@ def simulate(
 
     Args:
         plan: The plan file (JSON), of a robot whose file has masses (dynamics).
-        sets: How many sets of parameters.
+        cell: What is known of the arm (YAML), as zerorev identify writes it; without it every parameter has its prior.
+            Where the file says what was measured of the plan's baselines, the sets that are far from that are dropped.
+        sets: How many sets of parameters are drawn.
         seed: Of the sets; the same seed gives the same answer, on any number of workers.
         feed_mm_s: Feed of both legs; by default as planned.
         thrust_n: Thrust of the drill while it cuts; by default the plan's thrust_n.
@@ -72,14 +79,25 @@ def simulate(
     from zerorev.cell.ensemble import HoleStudy, study
     from zerorev.cell.parameters import drawn
     from zerorev.cell.reference import Manner
+    from zerorev.files.cell_file import read_cell
     from zerorev.files.io import read_plan
-    from zerorev.model.ranges import HELD
+    from zerorev.model.ranges import HELD, Cell
     from zerorev.report.words import study as shown
 
     stated = read_plan(plan)
     thrust = stated.settings.thrust if thrust_n is None else thrust_n
-    held = () if stated.tool.load is None else ("tool_mass", "tool_lever")
-    drawn_sets = drawn(sets, seed, vary=HELD if vary_cell else (), held=held)
+    known_arm = Cell() if cell is None else read_cell(cell)
+    if known_arm.robot not in ("", stated.robot.name):
+        raise InputError(
+            f"is of the robot {known_arm.robot}, the plan of {stated.robot.name}", where=str(cell),
+            accepted="a cell file of the plan's robot",
+        )  # fmt: skip
+    # what the tool's file states is held, but for what was fitted to recordings since
+    held = () if stated.tool.load is None else tuple(
+        name for name in ("tool_mass", "tool_lever") if known_arm.ranges[name].basis == "prior"
+    )  # fmt: skip
+    drawn_sets = drawn(sets, seed, known_arm.ranges, vary=HELD if vary_cell else (), held=held)
+    drawn_sets = _near_what_was_measured(stated, drawn_sets, known_arm, where)
     manner = Manner(
         feed=None if feed_mm_s is None else feed_mm_s * 1e-3, corner=None if corner_mm is None else corner_mm * 1e-3
     )
@@ -104,7 +122,9 @@ def simulate(
             studied.append(found)
             if folder is not None and found.id not in known:
                 folder.add(numbers[found.id], found)
-    answer: dict[str, Any] = shown.answer(studied, left_out, sets=sets, seed=seed, cell=None)
+    answer: dict[str, Any] = shown.answer(
+        studied, left_out, sets=len(drawn_sets), seed=seed, cell=None if cell is None else cell.name
+    )
     if json:
         terminal.print_json(answer)
     else:
@@ -114,9 +134,27 @@ def simulate(
         from zerorev.report.figures.study import write_figures
 
         for path in write_figures(studied, figures):
-            terminal.say(
-                f"picture {path}",
-            )
+            if not json:
+                terminal.say(f"picture {path}")
     if output is not None and not json:
         terminal.say(f"study written to {output}")
     return FINE if studied and not left_out else FOUND
+
+
+def _near_what_was_measured(plan: Plan, sets: list[ParameterSet], cell: Cell, where: Machines) -> list[ParameterSet]:
+    """The sets of which the baselines are near those that the cell file states, where the plan has such holes."""
+    from zerorev.cell.ensemble import conditioned
+    from zerorev.cell.reference import Manner
+
+    measured = cell.conditioning
+    if measured is None:
+        return sets
+    ids = {hole.hole.id for hole in plan.holes}
+    of_plan = {hole: deviation for hole, deviation in measured.baseline.items() if hole in ids}
+    if not of_plan:
+        terminal.note("the plan has none of the holes whose baselines were measured: no set is dropped")
+        return sets
+    manner = Manner(feed=measured.feed, corner=measured.corner)
+    kept = conditioned(plan, sets, of_plan, manner, factor=measured.factor, machines=where)
+    terminal.note(f"{len(kept):,} of {len(sets):,} sets have baselines near those that were measured")
+    return kept

@@ -6,6 +6,8 @@ then moves the other way against its load, so that gears cross to their other fl
 
 from __future__ import annotations
 
+import numpy as np
+
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import lost_motion
@@ -17,6 +19,7 @@ __all__ = ["gentlest_first"]
 
 SAME_COST = 1e-9  # relative
 WORTH = 1e-7  # [m] by which the predicted lost motion has to be less
+WORTH_A_FLIP = 10e-6  # [m] likewise on the other wrist flip: from hole to hole the wrist is to turn over seldom
 SAME_LENGTH = 1e-9  # [m]
 
 
@@ -35,17 +38,18 @@ def gentlest_first(drilling: Drilling, settings: Settings, motion: Candidate) ->
     if now is None:
         return (motion,)
     twin = legs_swapped(motion.profile)
-    likes = [(twin, branch)]
+    likes = [(twin, branch, 0.0)]
     if drilling.hole.branch is None:
-        likes += [(motion.profile, branch ^ 1), (twin, branch ^ 1)]
-    judged = sorted(
-        ((lost_motion(drilling, profile, other, settings.thrust) or 0.0, k) for k, (profile, other) in enumerate(likes))
-    )
+        likes += [(profile, branch ^ 1, WORTH_A_FLIP) for profile in (motion.profile, twin)]
+    judged = []
+    for k, (profile, other, worth) in enumerate(likes):
+        lost = lost_motion(drilling, profile, other, settings.thrust)
+        judged.append((np.inf if lost is None else lost + worth, k))
     order = Order(drilling.without_motion(), settings)
-    for lost, k in judged:
+    for lost, k in sorted(judged):
         if lost > now - WORTH:
             break
-        found = order.candidate(*likes[k])
+        found = order.candidate(*likes[k][:2])
         if found is not None and _as_good(order, found, motion) and _led_in(drilling, settings, found, motion):
             return found, motion
     return (motion,)
