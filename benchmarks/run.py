@@ -13,6 +13,7 @@ from pathlib import Path
 
 from benchmarks.parts import (
     Options,
+    cell,
     certificate,
     deepest,
     field,
@@ -46,6 +47,7 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "map_scaling": map_scaling.run,
     "map_great": map_great.run,
     "certificate": certificate.run,
+    "cell": cell.run,
     "tolerance": tolerance.run,
     "start": start.run,
     "job": job.run,

@@ -8,14 +8,14 @@ import numba
 import numpy as np
 
 from oracles import legs as twin
-from zerorev.files.io import read_robot, read_tool, robot_names
+from oracles.holes import ROBOTS
+from zerorev.files.io import read_tool
 from zerorev.kernels import field, leg_search, legs
 from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
 from zerorev.motion.drilling import Drilling, joint_rates
 
-ROBOTS = [read_robot(name) for name in robot_names()]
 TOOL = read_tool("thesis_drill")
 SLOW = bool(numba.config.DISABLE_JIT)
 ALL_JOINTS = np.ones(6, dtype=bool)

@@ -10,7 +10,7 @@ from benchmarks.cases import drilled, mirrored, random_place
 from scipy.optimize import minimize
 
 from oracles import search as twin
-from zerorev.files.io import read_robot, robot_names
+from oracles.holes import ROBOTS
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan
@@ -260,15 +260,13 @@ class TestAgainstEveryPlanOfAGrid:
 
     @pytest.mark.parametrize("seed", ORDINARY)
     def test_is_never_worse(self, tool, seed):
-        names = robot_names()
-        robot = read_robot(names[seed % len(names)])
+        robot = ROBOTS[seed % len(ROBOTS)]
         self.compare(robot, tool, twin.random_hole(robot, seed), replace(NO_THRESHOLD, blend=0.0), 36)
 
     @pytest.mark.long
     @pytest.mark.parametrize("seed", range(20, 60))
     def test_is_never_worse_on_many_holes_nor_with_other_weights(self, tool, seed):
-        names, rng = robot_names(), np.random.default_rng(seed)
-        robot = read_robot(names[seed % len(names)])
+        rng, robot = np.random.default_rng(seed), ROBOTS[seed % len(ROBOTS)]
         weights = tuple(rng.choice([0.5, 1.0, 2.0, 3.0], 6))
         settings = replace(NO_THRESHOLD, blend=0.0, reversal_weights=weights)
         self.compare(robot, tool, twin.random_hole(robot, seed), settings, 36)

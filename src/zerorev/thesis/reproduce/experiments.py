@@ -212,10 +212,12 @@ def rests(context: Context) -> Section:
     share = [float((all_three >= least).all(axis=0).mean()) for least in (0.4, 0.6)]
     names = [hole.id for hole in slow]
     without = [100 * band(hole.gain()[1]).median for hole in thrusts[0]]
-    with_thrust = ", ".join(f"{hole.id} {_percent(band(hole.gain()[1]))} %" for hole in thrusts[1])
-    replanned = ", ".join(
-        f"{hole.id} {_percent(band(hole.gain()[1]))} % ({_mm(band(hole.deviation[hole.of('plan'), 1]))} mm)"
-        for hole in loaded
+    with_thrust, replanned = (
+        ", ".join(
+            f"{hole.id} {_percent(band(hole.gain()[1]))} % ({_mm(band(hole.deviation[hole.of('plan'), 1]))} mm)"
+            for hole in each
+        )
+        for each in (thrusts[1], loaded)
     )
     results = (
         Result(
@@ -229,8 +231,8 @@ def rests(context: Context) -> Section:
             "gain at the tool with 100 N of thrust", "drilled in foam: hardly any thrust", "sec. 5.3",
             with_thrust,
             replanned,
-            "On a free tip the thrust takes the gain away at positions 1 and 3; planned with thrust_n some comes back "
-            "(a hole that is not named there has no baseline on its branch). "
+            "On a free tip the thrust takes the gain away. Planned with thrust_n a motion may lie on another branch, "
+            "with another baseline (none, where a hole is not named): the deviations compare, the gains do not. "
             "A foot on the part that takes the thrust, and lets the tool turn, leaves the arm without.",
         ),
     )  # fmt: skip
