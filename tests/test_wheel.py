@@ -22,7 +22,7 @@ from oracles.places import ROOT
 pytestmark = pytest.mark.long
 
 EXTRAS = ("matplotlib", "flint", "xarray", "zarr", "plotly", "distributed", "jinja2", "nicegui", "contourpy", "trimesh",
-          "defusedxml", "pymoo", "cma", "pytest")  # fmt: skip
+          "pymoo", "cma", "pytest")  # fmt: skip
 # a command, and the extra that it names where that is missing
 NEEDING = (
     ("plan plate.yaml --figures pictures", "figures"),
