@@ -288,7 +288,7 @@ def check_map(data: bytes, folder: Path) -> None:
             given = [given["start"] + n * given["step"] for n in (0, steps)]
             assert len(axis) == steps + 1
             axis = axis[[0, -1]]
-        np.testing.assert_allclose(axis, given, rtol=1e-9, atol=1e-8)
+        np.testing.assert_allclose(axis, np.array(given, dtype=float), rtol=1e-9, atol=1e-8)
     given = said["directions"]
     if isinstance(given, list):
         scaled = [np.array(each) / np.abs(each).max() for each in given]
