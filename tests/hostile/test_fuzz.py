@@ -291,7 +291,7 @@ def check_map(data: bytes, folder: Path) -> None:
         np.testing.assert_allclose(axis, np.array(given, dtype=float), rtol=1e-9, atol=1e-8)
     given = said["directions"]
     if isinstance(given, list):
-        scaled = [np.array(each) / np.abs(each).max() for each in given]
+        scaled = [each / np.abs(each).max() for each in np.array(given, dtype=float)]
         np.testing.assert_allclose(task.directions, [each / np.linalg.norm(each) for each in scaled], atol=1e-9)
     else:
         count = given["sphere"] if "sphere" in given else given["cone"]["count"]
