@@ -15,7 +15,6 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import lost_motion
 from zerorev.planning.hole import plan
 from zerorev.program.lead_in import find_lead_in
-from zerorev.search.cut_short import legs_swapped
 from zerorev.search.optimum import optimum
 from zerorev.search.rank import Order
 from zerorev.search.twins import gentlest_first
@@ -48,7 +47,7 @@ def test_no_like_is_gentler_but_where_it_costs():
         chosen += first is not best
         run = find_lead_in(drilling, first.evaluation.motion, SETTINGS.lead_in).length
         assert run >= find_lead_in(drilling, best.evaluation.motion, SETTINGS.lead_in).length - 1e-9
-        for profile in (best.profile, legs_swapped(best.profile)):
+        for profile in (best.profile, best.profile.reversed()):
             for branch in (best.branch, best.branch ^ 1):
                 other = order.candidate(profile, branch)
                 flipped = branch != first.branch

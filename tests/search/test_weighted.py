@@ -16,7 +16,6 @@ from zerorev.motion.criteria import measure, objective_of
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate, meets_threshold
 from zerorev.search import weighted
-from zerorev.search.cut_short import legs_swapped
 from zerorev.search.exact import search
 from zerorev.search.straight import straight_motion
 from zerorev.search.weighted import search_weighted
@@ -139,7 +138,7 @@ class TestNaiveTwin:
             profile = straight_motion(hole.depth, point.psi_t, point.slopes, periodic=True)
             whole = cost(robot, tool, hole, replace(settings, min_rate=0.9 * settings.min_rate), profile, point.branch)
             if name == "lost_motion":  # of the better order, and of the wrist flip that was followed
-                swapped = legs_swapped(profile)
+                swapped = profile.reversed()
                 whole = min(whole, cost(robot, tool, hole, replace(settings, min_rate=0.0), swapped, point.branch))
             assert point.cost == pytest.approx(
                 whole, abs=2e-3 if name != "lost_motion" or point.branch % 2 == 0 else 0.15

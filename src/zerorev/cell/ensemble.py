@@ -23,7 +23,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.workers import HERE, Machines, Workers
 
-__all__ = ["POINTS", "SIDES", "Band", "HoleStudy", "Study", "band", "conditioned", "deviations", "study"]
+__all__ = ["POINTS", "SIDES", "Band", "HoleStudy", "band", "conditioned", "deviations", "study"]
 
 SIDES = ("encoder", "tool")
 POINTS = 801  # of the mean path, evenly by path distance
@@ -77,27 +77,6 @@ class HoleStudy:
         return np.asarray(1.0 - other / base)
 
 
-@dataclass(frozen=True)
-class Study:
-    """A study of a plan.
-
-    Attributes:
-        holes: that have a baseline and a plan.
-        sets: the parameters, in order.
-        seed: of them.
-        manner: how the program was run.
-        thrust: of the drill [N].
-        left_out: holes without a motion or a baseline, by id: why.
-    """
-
-    holes: tuple[HoleStudy, ...]
-    sets: tuple[ParameterSet, ...]
-    seed: int
-    manner: Manner
-    thrust: float
-    left_out: Mapping[str, str]
-
-
 def band(values: Array) -> Band:
     """Median, 5th and 95th percentile of a value per set."""
     low, median, high = np.quantile(values, QUANTILES)
@@ -108,7 +87,6 @@ def study(
     plan: Plan,
     sets: Sequence[ParameterSet],
     *,
-    seed: int = 0,
     manner: Manner | None = None,
     thrust: float = 0.0,
     motions: tuple[MotionName, ...] = MOTIONS,
@@ -121,7 +99,6 @@ def study(
     Args:
         plan: of a robot with dynamics.
         sets: of parameters.
-        seed: that they were drawn with; kept, not used.
         manner: of the controller.
         thrust: of the drill while it cuts [N].
         motions: to compare; baseline and plan are always among them.
@@ -258,7 +235,7 @@ def _measured(done: Run) -> _Measured:
         vertical.append(np.abs(apart[inside, 2]).max())
         offset.append(np.linalg.norm(mean))
         kept.append(distance[:: (POINTS - 1) // (KEPT_POINTS - 1)])
-    nodes = np.abs(_path(done.reference)) <= window
+    nodes = np.abs(done.reference.path) <= window
     swing = np.ptp(done.drive[nodes], axis=0)
     return _Measured(np.array(greatest), np.array(vertical), np.array(offset), swing, np.array(kept))
 
@@ -273,7 +250,7 @@ def deviations(done: Run) -> tuple[Array, tuple[Array, Array]]:
         path distance [m], 0 at the turn, shape (801,); the deviation by the encoders and of the tool [m], base frame,
         each (801, 3).
     """
-    own = _path(done.reference)
+    own = done.reference.path
     grid = np.linspace(own[0], own[-1], POINTS)
     d = done.reference.drilling.hole.direction
     found = []
@@ -281,12 +258,6 @@ def deviations(done: Run) -> tuple[Array, tuple[Array, Array]]:
         lateral = deviation - np.outer(deviation @ d, d)
         found.append(np.stack([np.interp(grid, own, lateral[:, k]) for k in range(3)], axis=1))
     return grid, (found[0], found[1])
-
-
-def _path(reference: Followed) -> Array:
-    """Path distance at the nodes [m], 0 at the turn, shape (N,)."""
-    path = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(reference.standoff)))])
-    return np.asarray(path - path[reference.turn])
 
 
 def _joined(hole_id: str, parts: list[_Part]) -> HoleStudy:

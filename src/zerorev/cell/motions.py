@@ -54,10 +54,9 @@ def compared(plan: Plan, hole: HolePlan, manner: Manner, names: tuple[MotionName
     assert motion is not None
     drilling = Drilling(plan.robot, plan.tool, hole.hole)
     profile = motion.profile
-    constant = Profile(profile.standoff[[0, profile.corner, -1]], np.full(3, profile.psi[0]))
-    swapped = Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy())
+    constant = profile.at_constant_spin()
     asked: dict[MotionName, Profile] = {
-        "baseline": constant, "plan": profile, "twin": swapped, "compensated": constant, "biased": constant,
+        "baseline": constant, "plan": profile, "twin": profile.reversed(), "compensated": constant, "biased": constant,
     }  # fmt: skip
     found: dict[MotionName, Followed] = {}
     shift: dict[MotionName, Array] = {}

@@ -116,6 +116,12 @@ class Followed:
         """The node of greatest depth."""
         return int(np.argmin(self.standoff))
 
+    @cached_property
+    def path(self) -> Array:
+        """Path distance of the nodes along the axis [m], 0 at the turn, shape (N,) (thesis fig. 33)."""
+        along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(self.standoff)))])
+        return np.asarray(along - along[self.turn])
+
     @property
     def speed(self) -> float:
         """Greatest speed of the tip along the axis that is reached [m/s]."""

@@ -17,10 +17,19 @@ from zerorev.files.output import check_whole_folder, write_whole_folder
 from zerorev.model.fingerprint import fingerprint
 from zerorev.model.plan import Plan
 
-__all__ = ["StudyFolder", "read_holes"]
+__all__ = ["StudyFolder", "check_place", "read_holes"]
 
 FORMAT = "zerorev.study/1"
 MARK = "zarr.json"
+
+
+def check_place(path: Path) -> None:
+    """Make sure, before long work, that a study can be written there.
+
+    Raises:
+        OutputError: it cannot.
+    """
+    check_whole_folder(path, MARK)
 
 
 class StudyFolder:
@@ -51,7 +60,6 @@ class StudyFolder:
         planned = [(hole.hole, hole.motion) for hole in plan.holes]
         own = fingerprint(plan.robot, plan.tool, plan.settings, planned, values, manner, thrust)
         if path.exists():
-            check_whole_folder(path, MARK)
             stated = _head(path)
             if stated.get("fingerprint") != own:
                 raise InputError(

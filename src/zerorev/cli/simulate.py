@@ -76,6 +76,9 @@ def simulate(
     if output is not None:
         need("xarray", "xarray", "--output", "maps")
         need("zarr", "zarr", "--output", "maps")
+        from zerorev.cell.study_file import StudyFolder, check_place
+
+        check_place(output)
     from zerorev.cell.ensemble import HoleStudy, study
     from zerorev.cell.parameters import drawn
     from zerorev.cell.reference import Manner
@@ -103,8 +106,6 @@ def simulate(
     )
     folder, known = None, {}
     if output is not None:
-        from zerorev.cell.study_file import StudyFolder
-
         folder = StudyFolder(output, stated, drawn_sets, seed, manner, thrust)
         known = folder.known()
         if known:
@@ -114,7 +115,7 @@ def simulate(
     left_out: dict[str, str] = {}
     with terminal.progress("simulating", len(stated.holes), each="block") as progress:
         for found in study(
-            stated, drawn_sets, seed=seed, manner=manner, thrust=thrust, machines=where, known=known, progress=progress
+            stated, drawn_sets, manner=manner, thrust=thrust, machines=where, known=known, progress=progress
         ):
             if not isinstance(found, HoleStudy):
                 left_out[found[0]] = found[1]

@@ -68,6 +68,10 @@ class Profile:
         """The same motion run backwards (the mirror law, thesis eq. 4.12)."""
         return Profile(self.standoff[::-1], self.psi[::-1])
 
+    def at_constant_spin(self) -> Profile:
+        """The same stroke with the spin that it begins with: how robots drill today, the baseline."""
+        return Profile(self.standoff[[0, self.corner, -1]], np.full(3, self.psi[0]))
+
     @property
     def twist_rate(self) -> Array:
         """The rate d psi / d s of each segment, read outwards [rad/m], shape (n - 1,)."""

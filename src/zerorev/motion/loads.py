@@ -133,7 +133,7 @@ def twins_lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust:
     at_tip = lost_motion(drilling, profile, branch, thrust)
     if at_tip is None or not np.isfinite(at_tip):
         return None
-    twin = lost_motion(drilling, Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy()), branch, thrust)
+    twin = lost_motion(drilling, profile.reversed(), branch, thrust)
     return LostMotion(at_tip, twin if twin is not None and np.isfinite(twin) else None)
 
 

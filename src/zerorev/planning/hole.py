@@ -196,8 +196,7 @@ def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> Hole
 
 def _baseline(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Baseline | None:
     """The same hole drilled with psi = psi_start on the same branch, if that can be run."""
-    constant = Profile(profile.standoff[[0, profile.corner, -1]], np.full(3, profile.psi[0]))
-    score = evaluated(drilling, constant, branch, settings).score
+    score = evaluated(drilling, profile.at_constant_spin(), branch, settings).score
     return None if score is None else Baseline(score.reversals_per_joint, score.travel)
 
 

@@ -53,8 +53,7 @@ def _calibration(
 ) -> Iterator[Finding]:
     """A tool centre point that is off by delta moves the tip by 2 delta sin(turn / 2) while the tool turns."""
     corner = profile.corner
-    constant = Profile(profile.standoff[[0, corner, -1]], np.full(3, profile.psi[0]))
-    still = lost_motion(drilling, constant, branch, settings.thrust)
+    still = lost_motion(drilling, profile.at_constant_spin(), branch, settings.thrust)
     turn = float(profile.distance[corner])
     half = turn / 2
     _, spins = profile.at(np.linspace(turn - half, turn + half, 41))

@@ -14,7 +14,7 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.segments import Goal, Legs, improved, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, constraints
 
-__all__ = ["cut_short", "descended", "eased", "legs_swapped", "steadied"]
+__all__ = ["cut_short", "descended", "eased", "steadied"]
 
 POINTS = 33  # of a leg at which the joints are examined
 SAME_MARGIN = 1e-6  # relative
@@ -40,11 +40,6 @@ def cut_short(profile: Profile, depth: float) -> Profile:
         np.concatenate([standoff[0][:0:-1], standoff[1]]),
         np.concatenate([psi[0][:0:-1], psi[1]]),
     )
-
-
-def legs_swapped(profile: Profile) -> Profile:
-    """The same motion run backwards: the mirror law gives it the same reversals and travel (theory §2.1)."""
-    return Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy())
 
 
 def descended(order: Order, motion: Candidate) -> Candidate:

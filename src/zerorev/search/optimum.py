@@ -24,7 +24,7 @@ from zerorev.program.lead_in import find_lead_in
 from zerorev.search.bounds.free_depth import bound_free_depth
 from zerorev.search.bounds.proof import prove
 from zerorev.search.bounds.straight_depth import bound_depth
-from zerorev.search.cut_short import cut_short, descended, eased, legs_swapped, steadied
+from zerorev.search.cut_short import cut_short, descended, eased, steadied
 from zerorev.search.deepest import WORTH_RAISING, Deepest, deepened, deepest_of
 from zerorev.search.exact import search, without_reversal
 from zerorev.search.free import search_free
@@ -225,7 +225,7 @@ class _Pool:
         inner = [cut_short(one.profile, self.drilling.hole.depth) for one in whole if one is not None]
         branches = [one.branch for one in whole if one is not None]
         for profile, branch in zip([best.profile, *inner], [best.branch, *branches], strict=True):
-            for way in (profile, legs_swapped(profile)):
+            for way in (profile, profile.reversed()):
                 found = self.order.candidate(way, branch)
                 if found is not None:
                     yield found
@@ -234,7 +234,7 @@ class _Pool:
         """The deepest stroke whose whole lead-in runs, cut from the deepest motion, its legs swapped or not."""
         if found.profile is None or found.branch is None:
             return found
-        ways = [self.longest_led_in(way, found.branch) for way in (found.profile, legs_swapped(found.profile))]
+        ways = [self.longest_led_in(way, found.branch) for way in (found.profile, found.profile.reversed())]
         best = max((cut for cut in ways if cut is not None), key=lambda cut: cut.depth, default=None)
         if best is None:
             return Deepest(0.0, beyond_cap=found.beyond_cap)

@@ -12,7 +12,6 @@ from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import lost_motion
 from zerorev.program.lead_in import find_lead_in
-from zerorev.search.cut_short import legs_swapped
 from zerorev.search.rank import Candidate, Order
 
 __all__ = ["gentlest_first"]
@@ -37,7 +36,7 @@ def gentlest_first(drilling: Drilling, settings: Settings, motion: Candidate) ->
     now = lost_motion(drilling, motion.profile, branch, settings.thrust)
     if now is None:
         return (motion,)
-    twin = legs_swapped(motion.profile)
+    twin = motion.profile.reversed()
     likes = [(twin, branch, 0.0)]
     if drilling.hole.branch is None:
         likes += [(profile, branch ^ 1, WORTH_A_FLIP) for profile in (motion.profile, twin)]

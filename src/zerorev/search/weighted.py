@@ -22,7 +22,6 @@ from zerorev.model.settings import Objective, Settings
 from zerorev.motion.criteria import measure, objective_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
-from zerorev.search.cut_short import legs_swapped
 from zerorev.search.exact import search
 from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order
@@ -68,7 +67,7 @@ def search_weighted(drilling: Drilling, settings: Settings, known: Sequence[Cand
     points = [problem.zoomed(seed, settings.min_rate, fine=False) for seed in _apart(seeds)]
     found += [better for point in _apart(points)[:FINALISTS] if (better := problem.polished(point)) is not None]
     if "lost_motion" in dict(settings.weights):  # it depends on the order of the legs
-        swapped = (order.candidate(legs_swapped(one.profile), one.branch) for one in found)
+        swapped = (order.candidate(one.profile.reversed(), one.branch) for one in found)
         found += [one for one in swapped if one is not None]
     return min(found, key=order.rank)
 

@@ -15,7 +15,6 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.measures import Measures
 from zerorev.model.plan import Baseline, Event, HolePlan, LostMotion, Motion, Score
-from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.lever import compliance, line_rates, manipulability
@@ -140,8 +139,7 @@ def _in_order(events: tuple[Event, ...], places: Array, together: float) -> tupl
 def _baseline(robot: Robot, tool: Tool, hole: Hole, motion: Motion) -> Baseline | None:
     """The same hole at constant spin, from the same start; None where it cannot be run."""
     profile = motion.profile
-    constant = Profile(profile.standoff[[0, profile.corner, -1]], np.full(3, profile.psi[0]))
-    course = Course(robot, tool, hole, constant, motion.joints[0])
+    course = Course(robot, tool, hole, profile.at_constant_spin(), motion.joints[0])
     joints = course.joints(course.segment, course.fraction)
     if not np.isfinite(joints).all() or np.abs(np.diff(joints, axis=0)).max() > JUMP:
         return None

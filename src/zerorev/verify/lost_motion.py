@@ -14,7 +14,6 @@ import numpy.typing as npt
 from zerorev.model._arrays import Array
 from zerorev.model.dynamics import nominal_drives
 from zerorev.model.plan import LegName, LostMotion, LostMotionEvent
-from zerorev.model.profile import Profile
 from zerorev.verify.arm import skeleton
 from zerorev.verify.lever import lever
 from zerorev.verify.turning import Course
@@ -44,7 +43,7 @@ def lost_motion(course: Course, thrust: float) -> LostMotion | None:
     if not np.isfinite(at_tip):
         return None
     profile = course.profile
-    backwards = Profile(profile.standoff[::-1].copy(), profile.psi[::-1].copy())
+    backwards = profile.reversed()
     last = course.joints(np.array([0, profile.standoff.size - 2]), np.array([0.0, 1.0]))[1]
     twin = _at_tip(Course(course.robot, course.tool, course.hole, backwards, last), thrust)
     return LostMotion(at_tip, float(twin) if np.isfinite(twin) else None, tuple(_events(course, thrust)))

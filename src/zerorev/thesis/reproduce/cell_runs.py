@@ -94,7 +94,7 @@ def studied(
     def make() -> list[HoleStudy]:
         manner = Manner(feed=feed, corner=corner)
         found = study(
-            of, own, seed=SEED, manner=manner, thrust=thrust, motions=motions, machines=Machines(),
+            of, own, manner=manner, thrust=thrust, motions=motions, machines=Machines(),
             progress=context.tell,
         )  # fmt: skip
         return [each for each in found if isinstance(each, HoleStudy)]

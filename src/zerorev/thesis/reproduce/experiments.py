@@ -179,8 +179,7 @@ def _nominal(context: Context, n: int) -> tuple[list[np.ndarray], list[np.ndarra
         for name in ("baseline", "plan"):
             reference = found[name]
             done = run(reference, nominal())
-            along = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(reference.standoff)))])
-            paths.append(along - along[reference.turn])
+            paths.append(reference.path)
             torque.append(done.drive)
             angles.append(reference.q + done.rotor)
         context.kept[key] = paths, torque, angles
