@@ -15,8 +15,8 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kernels import dynamics as kernels
-from zerorev.kernels.dynamics import Gears
+from zerorev.kernels import loads as kernels
+from zerorev.kernels.loads import Gears
 from zerorev.model._arrays import Array
 from zerorev.model.dynamics import nominal_drives
 from zerorev.model.plan import LegName, LostMotion, LostMotionEvent
