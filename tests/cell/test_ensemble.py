@@ -18,6 +18,7 @@ from zerorev.files.io import write_plan
 from zerorev.model.ranges import RANGES, Cell, Conditioning
 from zerorev.workers import Machines
 
+FIGURES = ("deviation", "vertical", "offset", "swing", "position", "tilt", "ovality", "profile", "speed")
 THESIS = Manner(feed=0.2, corner=10e-3)
 RECORDED = {"position 1": 0.20e-3, "position 2": 0.14e-3, "position 3": 0.15e-3}
 
@@ -30,7 +31,7 @@ def recorded(published_plan):
 def same(one, other):
     assert one.id == other.id
     assert one.motions == other.motions
-    for name in ("deviation", "vertical", "offset", "swing", "profile", "speed"):
+    for name in FIGURES:
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
@@ -113,6 +114,12 @@ class TestCommand:
         assert set(hole["gain_percent"]["tool"]) == {"median", "p05", "p95"}
         assert set(hole["deviation_mm"]["baseline"]) == {"encoder", "tool"}
         assert {"baseline", "plan"} <= set(hole["feed_mm_s"])
+        assert set(hole["hole"]) == set(hole["deviation_mm"])
+        estimate = hole["hole"]["plan"]
+        assert set(estimate) == {"position_mm", "tilt_deg", "ovality_mm"}
+        assert set(estimate["ovality_mm"]) == {"entry", "exit"}
+        for each in (estimate["position_mm"], estimate["tilt_deg"], *estimate["ovality_mm"].values()):
+            assert 0 < each["p05"] <= each["median"] <= each["p95"] < 5
 
     def test_resumes(self, plan_file, tmp_path, capsys):
         folder = tmp_path / "STUDY.zarr"
@@ -129,6 +136,21 @@ class TestCommand:
         assert "resuming after 2 of 3 holes" in again.err
         assert main([*arguments, "--seed", "1"]) == 2
         assert "there is another study" in capsys.readouterr().err
+
+    def test_a_study_of_another_version_is_refused(self, plan_file, tmp_path, capsys):
+        import zarr
+
+        folder = tmp_path / "STUDY.zarr"
+        arguments = ["simulate", str(plan_file), "--sets", "2", "--feed-mm-s", "100", "-o", str(folder)]
+        assert main(arguments) == 0
+        said = capsys.readouterr().out
+        assert "upper bounds" in said
+        assert "ovality at" in said
+        zarr.open_group(folder, mode="r+").attrs["format"] = "zerorev.study/1"
+        assert main(arguments) == 2
+        said = capsys.readouterr().err
+        assert "another version (zerorev.study/1)" in said
+        assert "STUDY.zarr" in said
 
     def test_what_is_known_of_the_arm(self, plan_file, recorded, tmp_path, capsys):
         """Ranges of a cell file, and only the sets near what was measured; one of another robot is refused."""
@@ -149,7 +171,7 @@ class TestCommand:
     def test_draws_pictures(self, plan_file, tmp_path, capsys):
         assert main(["simulate", str(plan_file), "--sets", "3", "--feed-mm-s", "100", "--figures", str(tmp_path)]) == 0
         assert "constant spin" in capsys.readouterr().out
-        assert [path.name[:5] for path in sorted(tmp_path.iterdir())] == ["gains", "stray", "stray", "stray"]
+        assert [path.name[:5] for path in sorted(tmp_path.iterdir())] == ["gains", "holes", "stray", "stray", "stray"]
 
     def test_an_arm_without_masses(self, published_plan, tmp_path, capsys):
         bare = replace(published_plan, robot=replace(published_plan.robot, dynamics=None))

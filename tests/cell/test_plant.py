@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from oracles.mujoco_arm import followed_by_mujoco
-from zerorev.cell.ensemble import deviations
 from zerorev.cell.motions import compared
 from zerorev.cell.parameters import ParameterSet, drawn
 from zerorev.cell.plant import REST, TIME_STEP, run
 from zerorev.cell.reference import MASS_EVERY, STEP, Manner
+from zerorev.cell.run_figures import deviations
 from zerorev.kernels.plant import Reference
 
 THESIS = Manner(feed=0.2, corner=10e-3)

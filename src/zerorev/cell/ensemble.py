@@ -14,23 +14,23 @@ from typing import NamedTuple
 
 import numpy as np
 
+from zerorev.cell.hole_estimate import THROUGH, calibrated_axis
 from zerorev.cell.motions import MOTIONS, MotionName, compared
 from zerorev.cell.parameters import ParameterSet
-from zerorev.cell.plant import Run, run
+from zerorev.cell.plant import run
 from zerorev.cell.reference import Followed, Manner
+from zerorev.cell.run_figures import KEPT_POINTS, RunFigures, run_figures
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.workers import HERE, Machines, Workers
 
-__all__ = ["POINTS", "SIDES", "Band", "HoleStudy", "band", "conditioned", "deviations", "study"]
+__all__ = ["ENDS", "SIDES", "Band", "HoleStudy", "band", "conditioned", "study"]
 
 SIDES = ("encoder", "tool")
-POINTS = 801  # of the mean path, evenly by path distance
-KEPT_POINTS = 201  # of a profile that is kept
+ENDS = ("entry", "exit")
 BLOCK = 25  # sets that a worker is given at a time
 QUANTILES = (0.05, 0.5, 0.95)
-THRUST_ENDS = 2e-3  # [m] before the turn: the drill is through
 
 
 class Band(NamedTuple):
@@ -52,6 +52,9 @@ class HoleStudy:
         vertical: of it the part along Z of the base [m], likewise.
         offset: distance of the mean path from the commanded one [m], likewise.
         swing: greatest less least torque of the drives in the window [N m], shape (M, 6, sets).
+        position: how far the drilled hole is off, across its axis [m], shape (M, sets).
+        tilt: of the hole [rad], likewise.
+        ovality: of the hole [m], shape (M, 2, sets): at its entry and exit.
         profile: distance from the mean path [m], shape (M, 2, 3, 201): 5th percentile, median, 95th along the path.
         path: path distance of the profile over the stroke, -1 to 1, shape (201,).
         speed: of the tip that is reached [m/s], shape (M,).
@@ -63,6 +66,9 @@ class HoleStudy:
     vertical: Array
     offset: Array
     swing: Array
+    position: Array
+    tilt: Array
+    ovality: Array
     profile: Array
     path: Array
     speed: Array
@@ -141,10 +147,11 @@ def study(
                 done += 1
                 if progress:
                     progress(done, len(tasks))
-            if "baseline" not in parts[0].motions or "plan" not in parts[0].motions:
-                yield hole.hole.id, "the same hole with constant spin cannot be run"
+            whole = [part for part in parts if part is not None]
+            if whole:
+                yield _joined(hole.hole.id, whole)
             else:
-                yield _joined(hole.hole.id, parts)
+                yield hole.hole.id, "the same hole with constant spin cannot be run"
 
 
 def _why_not(hole: HolePlan) -> str | None:
@@ -154,14 +161,10 @@ def _why_not(hole: HolePlan) -> str | None:
 
 
 class _Part(NamedTuple):
-    """What some sets did: as `HoleStudy`, but whole profiles, shape (M, 2, sets, 201)."""
+    """What some sets did: the motions, `RunFigures` with motions and sets first, (M, sets, ...), and the speeds."""
 
     motions: tuple[MotionName, ...]
-    deviation: Array
-    vertical: Array
-    offset: Array
-    swing: Array
-    profile: Array
+    figures: RunFigures
     speed: Array
 
 
@@ -171,8 +174,8 @@ def _block(
     manner: Manner,
     thrust: float,
     task: tuple[HolePlan, tuple[ParameterSet, ...]],
-) -> _Part:
-    """Some sets at one hole; references are shared by the sets that ask for the same manner."""
+) -> _Part | None:
+    """Some sets at one hole, or None where it cannot be run; sets that ask for the same manner share references."""
     hole, sets = task
     references: dict[Manner, tuple[Mapping[MotionName, Followed], Mapping[MotionName, Array]]] = {}
     rows = []
@@ -182,25 +185,21 @@ def _block(
             found = compared(plan, hole, asked, names)
             references[asked] = found.followed, found.shift
         followed, shift = references[asked]
+        if not {"baseline", "plan"} <= followed.keys():
+            return None
+        axis = calibrated_axis(followed["baseline"], each)
         rows.append([
-            _measured(run(followed[name], each, shift=shift.get(name), thrust=_thrust(followed[name], thrust)))
+            run_figures(run(followed[name], each, shift=shift.get(name), thrust=_thrust(followed[name], thrust)), axis)
             for name in names
             if name in followed
         ])  # fmt: skip
     followed = next(iter(references.values()))[0]
     motions = tuple(name for name in names if name in followed)
-    deviation, vertical, offset, swing, profile = (
-        np.array([[getattr(one, figure) for one in row] for row in rows]) for figure in _Measured._fields
-    )
-    return _Part(
-        motions,
-        np.moveaxis(deviation, 0, -1),
-        np.moveaxis(vertical, 0, -1),
-        np.moveaxis(offset, 0, -1),
-        np.moveaxis(swing, 0, -1),
-        np.moveaxis(profile, 0, 2),
-        np.array([followed[name].speed for name in motions]),
-    )
+    figures = RunFigures(*(
+        np.array([[getattr(one, figure) for one in row] for row in rows]).swapaxes(0, 1)
+        for figure in RunFigures._fields
+    ))  # fmt: skip
+    return _Part(motions, figures, np.array([followed[name].speed for name in motions]))
 
 
 def _thrust(reference: Followed, thrust: float) -> Array | None:
@@ -209,68 +208,17 @@ def _thrust(reference: Followed, thrust: float) -> Array | None:
         return None
     depth = reference.drilling.hole.depth
     cutting = (np.arange(reference.standoff.size) < reference.turn) & (reference.standoff < depth)
-    return np.where(cutting & (reference.standoff > THRUST_ENDS), thrust, 0.0)
-
-
-class _Measured(NamedTuple):
-    """Of one run: (2,) each, encoder and tool, the swing (6,), the profile (2, 201)."""
-
-    deviation: Array
-    vertical: Array
-    offset: Array
-    swing: Array
-    profile: Array
-
-
-def _measured(done: Run) -> _Measured:
-    window = 0.5 * float(done.reference.drilling.hole.depth - done.reference.standoff.min())
-    path, figures = deviations(done)
-    inside = np.abs(path) <= window
-    greatest, vertical, offset, kept = [], [], [], []
-    for lateral in figures:
-        mean = lateral.mean(axis=0)
-        apart = lateral - mean
-        distance = np.linalg.norm(apart, axis=1)
-        greatest.append(distance[inside].max())
-        vertical.append(np.abs(apart[inside, 2]).max())
-        offset.append(np.linalg.norm(mean))
-        kept.append(distance[:: (POINTS - 1) // (KEPT_POINTS - 1)])
-    nodes = np.abs(done.reference.path) <= window
-    swing = np.ptp(done.drive[nodes], axis=0)
-    return _Measured(np.array(greatest), np.array(vertical), np.array(offset), swing, np.array(kept))
-
-
-def deviations(done: Run) -> tuple[Array, tuple[Array, Array]]:
-    """Deviation across the axis along a run, resampled evenly by path distance.
-
-    Args:
-        done: a run.
-
-    Returns:
-        path distance [m], 0 at the turn, shape (801,); the deviation by the encoders and of the tool [m], base frame,
-        each (801, 3).
-    """
-    own = done.reference.path
-    grid = np.linspace(own[0], own[-1], POINTS)
-    d = done.reference.drilling.hole.direction
-    found = []
-    for deviation in (done.encoder, done.tool):
-        lateral = deviation - np.outer(deviation @ d, d)
-        found.append(np.stack([np.interp(grid, own, lateral[:, k]) for k in range(3)], axis=1))
-    return grid, (found[0], found[1])
+    return np.where(cutting & (reference.standoff > THROUGH), thrust, 0.0)
 
 
 def _joined(hole_id: str, parts: list[_Part]) -> HoleStudy:
-    deviation, vertical, offset, swing = (
-        np.concatenate([getattr(part, name) for part in parts], axis=-1)
-        for name in ("deviation", "vertical", "offset", "swing")
+    figures = RunFigures(
+        *(np.concatenate(each, axis=1) for each in zip(*(part.figures for part in parts), strict=True))
     )
-    profiles = np.concatenate([part.profile for part in parts], axis=2)
-    profile = np.moveaxis(np.quantile(profiles, QUANTILES, axis=2), 0, 2)
-    return HoleStudy(
-        hole_id, parts[0].motions, deviation, vertical, offset, swing, profile, np.linspace(-1.0, 1.0, KEPT_POINTS),
-        parts[0].speed,
-    )  # fmt: skip
+    last = {name: np.moveaxis(getattr(figures, name), 1, -1) for name in RunFigures._fields if name != "profile"}
+    profile = np.moveaxis(np.quantile(figures.profile, QUANTILES, axis=1), 0, 2)
+    path = np.linspace(-1.0, 1.0, KEPT_POINTS)
+    return HoleStudy(hole_id, parts[0].motions, **last, profile=profile, path=path, speed=parts[0].speed)
 
 
 def conditioned(

@@ -10,8 +10,9 @@ from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.reference import MASS_EVERY, STEP, Followed
 from zerorev.kernels import plant as kernels
 from zerorev.model._arrays import Array
+from zerorev.motion.drilling import Drilling
 
-__all__ = ["REST", "TIME_STEP", "Run", "run"]
+__all__ = ["REST", "TIME_STEP", "Run", "run", "weighs_itself"]
 
 TIME_STEP = 1e-4  # [s]
 REST = 0.3  # [s] before the motion begins
@@ -72,7 +73,7 @@ def run(
     drilling = reference.drilling
     dynamics = drilling.robot.dynamics
     assert dynamics is not None
-    if drilling.tool.load is not None and "tool_mass" not in parameters.values:
+    if weighs_itself(drilling, parameters):
         torque, masses, stiffening = reference.loaded
     else:
         load = parameters["tool_mass"], parameters["tool_lever"]
@@ -100,3 +101,8 @@ def run(
         rotor, link = rotor + shift, link + shift
     delta, angle = parameters["tcp_error"], parameters["tcp_angle"]
     return Run(reference, rotor, link, drive, delta * np.array([np.cos(angle), np.sin(angle)]))
+
+
+def weighs_itself(drilling: Drilling, parameters: ParameterSet) -> bool:
+    """Whether the tool's weight is that of its file, and not one that was drawn."""
+    return drilling.tool.load is not None and "tool_mass" not in parameters.values

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from zerorev.cell.ensemble import QUANTILES, SIDES, HoleStudy
+from zerorev.cell.ensemble import ENDS, QUANTILES, SIDES, HoleStudy
 from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.reference import Manner
 from zerorev.errors import InputError
@@ -19,7 +19,7 @@ from zerorev.model.plan import Plan
 
 __all__ = ["StudyFolder", "check_place", "read_holes"]
 
-FORMAT = "zerorev.study/1"
+KIND, FORMAT = "zerorev.study/", "zerorev.study/2"
 MARK = "zarr.json"
 
 
@@ -98,11 +98,14 @@ class StudyFolder:
                 "vertical_m": (("motion", "side", "set"), study.vertical),
                 "offset_m": (("motion", "side", "set"), study.offset),
                 "swing_nm": (("motion", "joint", "set"), study.swing),
+                "position_m": (("motion", "set"), study.position),
+                "tilt_rad": (("motion", "set"), study.tilt),
+                "ovality_m": (("motion", "end", "set"), study.ovality),
                 "profile_m": (("motion", "side", "quantile", "path"), study.profile),
                 "speed_m_s": (("motion",), study.speed),
             },
             coords={"joint": np.arange(1, 7), "quantile": list(QUANTILES), "path": study.path},
-            attrs={"hole": study.id, "motions": list(study.motions), "sides": list(SIDES)},
+            attrs={"hole": study.id, "motions": list(study.motions), "sides": list(SIDES), "ends": list(ENDS)},
         )
 
         def fill(folder: Path) -> None:
@@ -135,8 +138,9 @@ def read_holes(path: Path) -> list[HoleStudy]:
             ) from error
         found.append(HoleStudy(
             str(held.attrs["hole"]), tuple(held.attrs["motions"]), held["deviation_m"].values,
-            held["vertical_m"].values, held["offset_m"].values, held["swing_nm"].values, held["profile_m"].values,
-            held["path"].values, held["speed_m_s"].values,
+            held["vertical_m"].values, held["offset_m"].values, held["swing_nm"].values, held["position_m"].values,
+            held["tilt_rad"].values, held["ovality_m"].values, held["profile_m"].values, held["path"].values,
+            held["speed_m_s"].values,
         ))  # fmt: skip
     return found
 
@@ -149,6 +153,12 @@ def _head(path: Path) -> dict[str, Any]:
         head = dict(zarr.open_group(path, mode="r", zarr_format=3).attrs)
     except Exception as error:
         raise InputError("no study", where=str(path), accepted=accepted) from error
-    if head.get("format") != FORMAT:
+    stated = head.get("format")
+    if isinstance(stated, str) and stated.startswith(KIND) and stated != FORMAT:
+        raise InputError(
+            f"is a study of another version ({stated}), with other figures", where=str(path),
+            accepted=f"{FORMAT}: another folder, in which the study is made again",
+        )  # fmt: skip
+    if stated != FORMAT:
         raise InputError("no study", where=str(path), accepted=accepted)
     return head

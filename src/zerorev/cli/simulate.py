@@ -41,8 +41,9 @@ def simulate(
 
     Each set of parameters is one possible arm: friction, stiffness and lost motion of its gears, its controller, its
     tool. Most of them nobody knows, so they are ranges, and so are the answers: medians with the 5th and 95th
-    percentile. Compared are the plan, the same holes at constant spin (the baseline), the plan's twin, a controller
-    that compensates lost motion, and gears that were laid on one flank before.
+    percentile. So are position, tilt and ovality of the hole that a free tip leaves, as upper bounds. Compared are the
+    plan, the same holes at constant spin (the baseline), the plan's twin, a controller that compensates lost motion,
+    and gears that were laid on one flank before.
 
     Args:
         plan: The plan file (JSON), of a robot whose file has masses (dynamics).
@@ -130,6 +131,7 @@ def simulate(
         terminal.print_json(answer)
     else:
         terminal.out().print(shown.table(studied))
+        terminal.out().print(shown.holes_table(studied))
         terminal.print_lines(shown.lines(studied, left_out, thrust))
     if figures is not None and studied:
         from zerorev.report.figures.study import write_figures

@@ -9,7 +9,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
 
-__all__ = ["MeasuredHole"]
+__all__ = ["MeasuredHole", "mean_centre", "tilt_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,10 +61,32 @@ class MeasuredHole:
         return None if self.centre is None else float(np.hypot(self.centre[:, 0], self.centre[:, 1]).max())
 
     @property
+    def position(self) -> float | None:
+        """Distance of the mean of the sections' centres from the nominal axis [m]."""
+        return None if self.centre is None else mean_centre(self.centre)
+
+    @property
     def tilt(self) -> float | None:
         """Angle between the nominal axis and the line that fits the centres best by depth [rad]; None below two."""
-        if self.centre is None or self.depth.size < 2:
-            return None
-        depth = self.depth - self.depth.mean()
-        slope = depth @ (self.centre - self.centre.mean(axis=0)) / (depth @ depth)
-        return float(np.arctan(np.hypot(slope[0], slope[1])))
+        return None if self.centre is None or self.depth.size < 2 else tilt_of(self.depth, self.centre)
+
+
+def mean_centre(centre: Array) -> float:
+    """Distance of the mean of sections' centres from the axis [m].
+
+    Args:
+        centre: of the sections, from the axis and across it [m], shape (N, 2) or (N, 3).
+    """
+    return float(np.linalg.norm(centre.mean(axis=0)))
+
+
+def tilt_of(depth: Array, centre: Array) -> float:
+    """Angle between the axis and the line that fits sections' centres best by depth [rad].
+
+    Args:
+        depth: of two or more sections [m], shape (N,).
+        centre: of them, from the axis and across it [m], shape (N, 2) or (N, 3).
+    """
+    along = depth - depth.mean()
+    slope = along @ (centre - centre.mean(axis=0)) / (along @ along)
+    return float(np.arctan(np.linalg.norm(slope)))

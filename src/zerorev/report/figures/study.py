@@ -1,27 +1,29 @@
-"""Pictures of a study: how far the tip strays along the path, and what each hole gains, with their ranges."""
+"""Pictures of a study: how far the tip strays along the path, what each hole gains, and the holes left."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from zerorev.cell.ensemble import SIDES, HoleStudy, band
+from zerorev.cell.ensemble import ENDS, SIDES, HoleStudy, band
 from zerorev.cell.motions import MotionName
 from zerorev.files.output import make_folder, write_bytes
+from zerorev.model._arrays import Array
 from zerorev.report.figures import style
 
-__all__ = ["gains", "stray", "write_figures"]
+__all__ = ["drilled", "gains", "stray", "write_figures"]
 
 DRAWN: tuple[MotionName, ...] = ("baseline", "plan")
 WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
 COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
-LOW, MEDIAN, HIGH = range(3)
+MOST_NAMED = 12  # holes that are named below an axis
 
 
 def stray(hole: HoleStudy) -> Figure:
@@ -70,20 +72,64 @@ def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
     for k in range(len(SIDES)):
         bands = np.array([band(hole.gain()[k]) for hole in studied]) * 100
         x = np.arange(len(studied)) + (k - 0.5) * 0.24
-        away = np.abs(bands[:, [1, 2]] - bands[:, [0]]).T
-        axes.errorbar(x, bands[:, 0], away, fmt="os"[k], color=colours[k], capsize=2.5, linewidth=1.2, markersize=5)
+        _bars(axes, x, bands, colours[k], "os"[k])
     axes.axhline(0, color=style.MUTED, linewidth=0.8)
     axes.set_ylim(max(axes.get_ylim()[0], -120), 105)
-    if len(studied) <= 12:
-        axes.set_xticks(range(len(studied)), [hole.id[:16] for hole in studied])
-        for tick in axes.get_xticklabels():
-            tick.set_parse_math(False)
+    _name_holes(axes, studied)
     handles = [
         Line2D([], [], color=colours[k], marker="os"[k], linestyle="none", label=WORDS[side])
         for k, side in enumerate(SIDES)
     ]
     style.legend_below(figure, handles, 2, ax)
     return figure
+
+
+def drilled(studied: Sequence[HoleStudy]) -> Figure:
+    """Position, tilt and ovality of the holes that a free tip leaves, of plan and constant spin: median and 5 to 95 %.
+
+    Args:
+        studied: holes, one or more.
+    """
+    subtitle = f"{len(studied)} holes   |   a free tip, which no hole guides: upper bounds, median and 5 to 95 %"
+    figure = style.headed_figure("The holes that are left", subtitle, 6.4)
+    grid = figure.add_gridspec(2, 2)
+    panels: tuple[tuple[str, Callable[[HoleStudy, int], Array], float], ...] = (
+        ("position [mm]", lambda hole, row: hole.position[row], 1e3),
+        ("tilt [deg]", lambda hole, row: hole.tilt[row], float(np.rad2deg(1.0))),
+        *(
+            (f"ovality at the {end} [mm]", lambda hole, row, k=k: hole.ovality[row, k], 1e3)
+            for k, end in enumerate(ENDS)
+        ),
+    )
+    for n, (words, figure_of, scale) in enumerate(panels):
+        axes = figure.add_subplot(grid[n // 2, n % 2])
+        style.bare_axes(axes)
+        style.label(axes, "hole" if n > 1 else "", words)
+        for k, motion in enumerate(DRAWN):
+            bands = np.array([band(figure_of(hole, hole.of(motion))) for hole in studied]) * scale
+            x = np.arange(len(studied)) + (k - 0.5) * 0.24
+            _bars(axes, x, bands, COLOURS[motion], "os"[k])
+        axes.set_ylim(bottom=0)
+        _name_holes(axes, studied)
+    handles = [
+        Line2D([], [], color=COLOURS[motion], marker="os"[k], linestyle="none", label=WORDS[motion])
+        for k, motion in enumerate(DRAWN)
+    ]
+    style.legend_below(figure, handles, 2)
+    return figure
+
+
+def _bars(axes: Axes, x: npt.NDArray[np.floating], bands: npt.NDArray[np.floating], colour: str, marker: str) -> None:
+    """Medians with bars from the 5th to the 95th percentile; bands of shape (n, 3)."""
+    away = np.abs(bands[:, [1, 2]] - bands[:, [0]]).T
+    axes.errorbar(x, bands[:, 0], away, fmt=marker, color=colour, capsize=2.5, linewidth=1.2, markersize=5)
+
+
+def _name_holes(axes: Axes, studied: Sequence[HoleStudy]) -> None:
+    if len(studied) <= MOST_NAMED:
+        axes.set_xticks(range(len(studied)), [hole.id[:16] for hole in studied])
+        for tick in axes.get_xticklabels():
+            tick.set_parse_math(False)
 
 
 def write_figures(studied: Sequence[HoleStudy], folder: Path) -> list[Path]:
@@ -97,8 +143,9 @@ def write_figures(studied: Sequence[HoleStudy], folder: Path) -> list[Path]:
         the files.
     """
     make_folder(folder)
-    files = [folder / "gains.png"]
+    files = [folder / "gains.png", folder / "holes.png"]
     write_bytes(files[0], style.png(gains(studied)))
+    write_bytes(files[1], style.png(drilled(studied)))
     for number, hole in enumerate(studied, start=1):
         stem = re.sub(r"[^A-Za-z0-9.-]+", "_", hole.id).strip("._")[:40]
         files.append(folder / f"stray_{number:03d}_{stem}.png")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -9,10 +10,12 @@ from rich import box
 from rich.table import Table
 from rich.text import Text
 
-from zerorev.cell.ensemble import SIDES, Band, HoleStudy, band
+from zerorev.cell.ensemble import ENDS, SIDES, Band, HoleStudy, band
 from zerorev.cell.motions import MotionName
 
-__all__ = ["NAMES", "answer", "lines", "table"]
+__all__ = ["NAMES", "answer", "band_data", "holes_table", "lines", "range_text", "table"]
+
+DEG = math.degrees(1.0)
 
 NAMES: dict[MotionName, str] = {
     "baseline": "constant spin",
@@ -47,21 +50,38 @@ def answer(
 def _hole(hole: HoleStudy) -> dict[str, Any]:
     return {
         "id": hole.id,
-        "gain_percent": {side: _band(band(hole.gain()[k]), 100, 1) for k, side in enumerate(SIDES)},
+        "gain_percent": {side: band_data(band(hole.gain()[k]), 100, 1) for k, side in enumerate(SIDES)},
         "gain_percent_of": {
-            motion: {side: _band(band(hole.gain(motion)[k]), 100, 1) for k, side in enumerate(SIDES)}
+            motion: {side: band_data(band(hole.gain(motion)[k]), 100, 1) for k, side in enumerate(SIDES)}
             for motion in hole.motions
             if motion not in ("baseline", "plan")
         },
         "deviation_mm": {
-            motion: {side: _band(band(hole.deviation[hole.of(motion), k]), 1e3, 4) for k, side in enumerate(SIDES)}
+            motion: {side: band_data(band(hole.deviation[hole.of(motion), k]), 1e3, 4) for k, side in enumerate(SIDES)}
             for motion in hole.motions
         },
+        "hole": {motion: _estimate(hole, motion) for motion in hole.motions},
         "feed_mm_s": {motion: round(float(hole.speed[hole.of(motion)]) * 1e3, 3) for motion in hole.motions},
     }
 
 
-def _band(values: Band, scale: float, digits: int) -> dict[str, float]:
+def _estimate(hole: HoleStudy, motion: MotionName) -> dict[str, Any]:
+    row = hole.of(motion)
+    return {
+        "position_mm": band_data(band(hole.position[row]), 1e3, 4),
+        "tilt_deg": band_data(band(hole.tilt[row]), DEG, 5),
+        "ovality_mm": {end: band_data(band(hole.ovality[row, k]), 1e3, 4) for k, end in enumerate(ENDS)},
+    }
+
+
+def band_data(values: Band, scale: float, digits: int) -> dict[str, float]:
+    """A band as plain data.
+
+    Args:
+        values: in SI units.
+        scale: by which they are multiplied.
+        digits: behind the point.
+    """
     return {
         "median": round(values.median * scale, digits),
         "p05": round(values.low * scale, digits),
@@ -81,14 +101,39 @@ def table(studied: Sequence[HoleStudy]) -> Table:
         for motion in hole.motions:
             row, cells = hole.of(motion), []
             for k in range(len(SIDES)):
-                cells.append(_range(band(hole.deviation[row, k]), 1e3, 3))
-                cells.append("" if motion == "baseline" else _range(band(hole.gain(motion)[k]), 100, 0))
+                cells.append(range_text(band(hole.deviation[row, k]), 1e3, 3))
+                cells.append("" if motion == "baseline" else range_text(band(hole.gain(motion)[k]), 100, 0))
             first = hole.id if motion == hole.motions[0] else ""
             shown.add_row(*(Text(cell) for cell in (first, NAMES[motion], *cells, f"{hole.speed[row] * 1e3:.0f}")))
     return shown
 
 
-def _range(values: Band, scale: float, digits: int) -> str:
+def holes_table(studied: Sequence[HoleStudy]) -> Table:
+    """One row for each hole and motion: the hole that a free tip leaves."""
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    shown.add_column(Text("hole"), no_wrap=True)
+    shown.add_column(Text("motion"))
+    for head in ("position\n[mm]", "tilt\n[deg]", "ovality at\nentry [mm]", "ovality at\nexit [mm]"):
+        shown.add_column(Text(head), justify="right")
+    for hole in studied:
+        for row, motion in enumerate(hole.motions):
+            cells = (
+                hole.id if row == 0 else "", NAMES[motion], range_text(band(hole.position[row]), 1e3, 3),
+                range_text(band(hole.tilt[row]), DEG, 3),
+                *(range_text(band(hole.ovality[row, k]), 1e3, 3) for k in range(len(ENDS))),
+            )  # fmt: skip
+            shown.add_row(*map(Text, cells))
+    return shown
+
+
+def range_text(values: Band, scale: float, digits: int) -> str:
+    """A band as a median and, in brackets, the 5th and 95th percentile.
+
+    Args:
+        values: in SI units.
+        scale: by which they are multiplied.
+        digits: behind the point.
+    """
     median, low, high = (f"{value * scale:.{digits}f}" for value in values)
     return f"{median} [{low}, {high}]"
 
@@ -101,6 +146,7 @@ def lines(studied: Sequence[HoleStudy], left_out: Mapping[str, str], thrust: flo
         yield Text(
             "median [5th, 95th percentile] over the sets; friction, stiffness and lost motion are guessed ranges"
         )
+        yield Text("the hole is that of a free tip, which no hole guides: position, tilt and ovality are upper bounds")
     if thrust > 0:
         yield Text(
             f"with {thrust:g} N of thrust on a free tip; a foot on the part that takes it, and lets the tool turn, "

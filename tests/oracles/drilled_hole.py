@@ -1,0 +1,47 @@
+"""The hole that a free tip leaves, section by section and circle by circle; nothing of ours."""
+
+from __future__ import annotations
+
+import numpy as np
+
+__all__ = ["drilled_hole", "longer_than_wide"]
+
+TURNED = np.linspace(0.0, np.pi, 721)
+
+
+def drilled_hole(standoff, across, sections):
+    """Mean centre, its line's slope across the axis [rad], and how far the two centres are apart at each section.
+
+    Args:
+        standoff: of the samples, falling to the turn and rising from it [m], shape (N,).
+        across: where the tip is, across the axis [m], shape (N, 3).
+        sections: stand-off of the sections [m].
+    """
+    turn = int(np.argmin(standoff))
+    centres, apart = [], []
+    for z in sections:
+        down = _crossing(standoff, across, z, range(turn - 1, -1, -1))
+        up = _crossing(standoff, across, z, range(turn, len(standoff) - 1))
+        centres.append(down)
+        apart.append(np.linalg.norm(np.subtract(up, down)))
+    centres = np.array(centres)
+    slopes = [np.polyfit(sections, centres[:, k], 1)[0] for k in range(3)]
+    return np.linalg.norm(np.mean(centres, axis=0)), np.arctan(np.linalg.norm(slopes)), np.array(apart)
+
+
+def _crossing(standoff, across, z, order):
+    """The place at the crossing of a stand-off that is nearest to the turn."""
+    for n in order:
+        low, high = sorted((standoff[n], standoff[n + 1]))
+        if low <= z <= high and high > low:
+            share = (z - standoff[n]) / (standoff[n + 1] - standoff[n])
+            return across[n] + share * (across[n + 1] - across[n])
+    raise AssertionError(f"no crossing of {z}")
+
+
+def longer_than_wide(one, other, radius):
+    """Greatest less least width of the union of two circles, over all ways to hold a calliper."""
+    rim = radius * np.stack([np.cos(2 * TURNED), np.sin(2 * TURNED)], axis=1)
+    points = np.concatenate([one + rim, other + rim])
+    widths = np.ptp(points @ np.stack([np.cos(TURNED), np.sin(TURNED)]), axis=0)
+    return widths.max() - widths.min()
