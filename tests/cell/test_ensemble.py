@@ -8,17 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from zerorev.cell.ensemble import HoleStudy, band, conditioned, study
+from zerorev.cell.ensemble import HoleStudy, band, study
 from zerorev.cell.parameters import drawn
+from zerorev.cell.possible import conditioned
 from zerorev.cell.reference import Manner
 from zerorev.cli import main
-from zerorev.errors import InputError
 from zerorev.files.cell_file import write_cell
 from zerorev.files.io import write_plan
 from zerorev.model.ranges import RANGES, Cell, Conditioning
 from zerorev.workers import Machines
 
-FIGURES = ("deviation", "vertical", "offset", "swing", "position", "tilt", "ovality", "profile", "speed")
+FIGURES = ("deviation", "vertical", "offset", "swing", "position", "tilt", "ovality", "profile", "torque", "speed")
 THESIS = Manner(feed=0.2, corner=10e-3)
 RECORDED = {"position 1": 0.20e-3, "position 2": 0.14e-3, "position 3": 0.15e-3}
 
@@ -72,15 +72,31 @@ def test_gains_of_the_conditioned_ensemble(published_plan, recorded):
     assert (tool >= 0.4).all(axis=0).mean() >= 0.70
 
 
-def test_conditioning_keeps_what_is_near(published_plan, recorded):
-    sets = drawn(20, 3)
-    kept = conditioned(published_plan, sets, recorded, THESIS)
-    assert 0 < len(kept) < len(sets)
-    name = next(iter(recorded))
-    with pytest.raises(InputError, match="none of 20 sets"):
-        conditioned(published_plan, sets, {name: 5e-3}, THESIS)
-    with pytest.raises(InputError, match="no hole 'nowhere'"):
-        conditioned(published_plan, sets, {"nowhere": 1e-4}, THESIS)
+def test_the_curves_are_of_the_stroke_with_the_turn_in_their_middle(published_plan):
+    """Of one arm: what is greatest in the window is the greatest of the curve there, and a lead-in shifts nothing."""
+    found = []
+    for lead_in in (0.0, 5e-3):
+        settings = replace(published_plan.settings, lead_in=lead_in)
+        plan = replace(published_plan, settings=settings, holes=published_plan.holes[:1])
+        (hole,) = study(plan, drawn(1, 0), manner=Manner(feed=0.1, corner=2e-3), motions=())
+        window = np.abs(hole.path) <= 0.5
+        torque = hole.torque[..., window]
+        greatest = hole.profile[:, :, 1][..., window].max(axis=-1)
+        np.testing.assert_allclose(greatest, hole.deviation[..., 0], rtol=0.15)
+        np.testing.assert_allclose(np.ptp(torque[:, :, 1], axis=-1), hole.swing[..., 0], rtol=0.1)
+        found.append(torque)
+    assert (np.abs(found[0] - found[1]).max(axis=-1)[:, :, 1] < 0.2 * hole.swing[..., 0]).all()
+
+
+def test_a_study_grows_block_by_block_to_the_same(published_plan):
+    plan, sets = replace(published_plan, holes=published_plan.holes[:2]), drawn(5, 1)
+    whole = list(study(plan, sets, manner=THESIS, motions=()))
+    growing = list(study(plan, sets, manner=THESIS, motions=(), block=2, growing=True))
+    assert [(hole.id, hole.sets) for hole in growing] == [(hole.id, n) for hole in whole for n in (2, 4, 5)]
+    for one, other in zip(whole, growing[2::3], strict=True):
+        same(one, other)
+    first = growing[0]
+    np.testing.assert_array_equal(first.deviation, whole[0].deviation[..., :2])
 
 
 def test_thrust_takes_the_gain_away(published_plan):
@@ -171,7 +187,8 @@ class TestCommand:
     def test_draws_pictures(self, plan_file, tmp_path, capsys):
         assert main(["simulate", str(plan_file), "--sets", "3", "--feed-mm-s", "100", "--figures", str(tmp_path)]) == 0
         assert "constant spin" in capsys.readouterr().out
-        assert [path.name[:5] for path in sorted(tmp_path.iterdir())] == ["gains", "holes", "stray", "stray", "stray"]
+        kinds = [path.name.split("_")[0].removesuffix(".png") for path in sorted(tmp_path.iterdir())]
+        assert kinds == ["gains", "holes", *["stray"] * 3, *["torques"] * 3]
 
     def test_an_arm_without_masses(self, published_plan, tmp_path, capsys):
         bare = replace(published_plan, robot=replace(published_plan.robot, dynamics=None))

@@ -7,8 +7,9 @@ of path on either side of the turn. By the encoders, as a controller's trace has
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
 
@@ -18,19 +19,19 @@ from zerorev.cell.hole_estimate import THROUGH, calibrated_axis
 from zerorev.cell.motions import MOTIONS, MotionName, compared
 from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.plant import run
-from zerorev.cell.reference import Followed, Manner
-from zerorev.cell.run_figures import KEPT_POINTS, RunFigures, run_figures
-from zerorev.errors import InputError
+from zerorev.cell.reference import Followed, Manner, dynamics_of
+from zerorev.cell.run_figures import KEPT, RunFigures, run_figures
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.workers import HERE, Machines, Workers
 
-__all__ = ["ENDS", "SIDES", "Band", "HoleStudy", "band", "conditioned", "study"]
+__all__ = ["BLOCK", "ENDS", "SIDES", "Band", "HoleStudy", "band", "study"]
 
 SIDES = ("encoder", "tool")
 ENDS = ("entry", "exit")
 BLOCK = 25  # sets that a worker is given at a time
 QUANTILES = (0.05, 0.5, 0.95)
+ALONG = ("profile", "torque")  # figures along the path, of which the quantiles are kept
 
 
 class Band(NamedTuple):
@@ -56,7 +57,8 @@ class HoleStudy:
         tilt: of the hole [rad], likewise.
         ovality: of the hole [m], shape (M, 2, sets): at its entry and exit.
         profile: distance from the mean path [m], shape (M, 2, 3, 201): 5th percentile, median, 95th along the path.
-        path: path distance of the profile over the stroke, -1 to 1, shape (201,).
+        torque: of the drives [N m], shape (M, 6, 3, 201): likewise.
+        path: path distance of profile and torque over the stroke, -1 at its start, 0 at the turn, 1 at its end, (201,).
         speed: of the tip that is reached [m/s], shape (M,).
     """
 
@@ -70,8 +72,14 @@ class HoleStudy:
     tilt: Array
     ovality: Array
     profile: Array
+    torque: Array
     path: Array
     speed: Array
+
+    @property
+    def sets(self) -> int:
+        """How many sets of parameters it is of."""
+        return int(self.deviation.shape[-1])
 
     def of(self, motion: MotionName) -> int:
         """Row of a motion."""
@@ -99,6 +107,8 @@ def study(
     machines: Machines = HERE,
     known: Mapping[str, HoleStudy] | None = None,
     progress: Callable[[int, int], None] | None = None,
+    block: int = BLOCK,
+    growing: bool = False,
 ) -> Iterator[HoleStudy | tuple[str, str]]:
     """What each set does at each hole of a plan, hole by hole; the same for any number of workers.
 
@@ -111,6 +121,8 @@ def study(
         machines: where.
         known: holes that were studied before, which are not studied again.
         progress: called with (blocks done, blocks in all).
+        block: how many sets a worker is given at a time; the study is the same.
+        growing: give out what is known of a hole after each block, too, of the sets until then.
 
     Yields:
         the study of a hole, or its id and why there is none.
@@ -120,15 +132,10 @@ def study(
     """
     manner, known = manner or Manner(), known or {}
     names = tuple(name for name in MOTIONS if name in {"baseline", "plan", *motions})
-    if plan.robot.dynamics is None:
-        raise InputError(
-            f"the masses of the robot {plan.robot.name} are not known, so that nothing can be simulated",
-            where="robot",
-            accepted="a robot file with dynamics: links, payload_kg",
-        )
-    blocks = [tuple(sets[k : k + BLOCK]) for k in range(0, len(sets), BLOCK)]
+    dynamics_of(plan.robot)
+    blocks = [tuple(sets[start : start + block]) for start in range(0, len(sets), block)]
     wanted = [hole for hole in plan.holes if hole.hole.id not in known and _why_not(hole) is None]
-    tasks = [(hole, block) for hole in wanted for block in blocks]
+    tasks = [(hole, each) for hole in wanted for each in blocks]
     done = 0
     if progress:
         progress(0, len(tasks))
@@ -141,16 +148,15 @@ def study(
             if (why := _why_not(hole)) is not None:
                 yield hole.hole.id, why
                 continue
-            parts = []
-            for _ in blocks:
-                parts.append(next(answers))
+            parts: list[_Part] = []
+            for number, part in enumerate(itertools.islice(answers, len(blocks)), start=1):
+                parts += [] if part is None else [part]
                 done += 1
                 if progress:
                     progress(done, len(tasks))
-            whole = [part for part in parts if part is not None]
-            if whole:
-                yield _joined(hole.hole.id, whole)
-            else:
+                if parts and (growing or number == len(blocks)):
+                    yield _joined(hole.hole.id, parts)
+            if not parts:
                 yield hole.hole.id, "the same hole with constant spin cannot be run"
 
 
@@ -215,48 +221,6 @@ def _joined(hole_id: str, parts: list[_Part]) -> HoleStudy:
     figures = RunFigures(
         *(np.concatenate(each, axis=1) for each in zip(*(part.figures for part in parts), strict=True))
     )
-    last = {name: np.moveaxis(getattr(figures, name), 1, -1) for name in RunFigures._fields if name != "profile"}
-    profile = np.moveaxis(np.quantile(figures.profile, QUANTILES, axis=1), 0, 2)
-    path = np.linspace(-1.0, 1.0, KEPT_POINTS)
-    return HoleStudy(hole_id, parts[0].motions, **last, profile=profile, path=path, speed=parts[0].speed)
-
-
-def conditioned(
-    plan: Plan,
-    sets: Sequence[ParameterSet],
-    measured: Mapping[str, float],
-    manner: Manner,
-    *,
-    factor: float = 2.0,
-    machines: Machines = HERE,
-) -> list[ParameterSet]:
-    """The sets of which the baseline, by the encoders, is near what was measured.
-
-    Args:
-        plan: whose holes were measured.
-        sets: to choose among.
-        measured: deviation of the baseline of some holes [m], by id.
-        manner: in which it was measured.
-        factor: by which it may be off at each hole.
-        machines: where.
-
-    Raises:
-        InputError: a hole that the plan does not have, or no set that fits.
-    """
-    ids = {hole.hole.id for hole in plan.holes}
-    for name in measured:
-        if name not in ids:
-            raise InputError(f"no hole '{name}' in the plan", where="baseline_mm", accepted=", ".join(sorted(ids)))
-    kept = replace(plan, holes=tuple(hole for hole in plan.holes if hole.hole.id in measured))
-    fits = np.ones(len(sets), dtype=bool)
-    for found in study(kept, sets, manner=manner, motions=("baseline",), machines=machines):
-        if isinstance(found, HoleStudy):
-            ratio = found.deviation[found.of("baseline"), 0] / measured[found.id]
-            fits &= (ratio < factor) & (ratio > 1 / factor)
-    if not fits.any():
-        raise InputError(
-            f"none of {len(sets)} sets has a baseline within a factor of {factor:g} of what was measured",
-            where="baseline_mm",
-            accepted="more sets, wider ranges, or what was measured in another manner",
-        )
-    return [each for each, fit in zip(sets, fits, strict=True) if fit]
+    along = {name: np.moveaxis(np.quantile(getattr(figures, name), QUANTILES, axis=1), 0, 2) for name in ALONG}
+    others = {name: np.moveaxis(getattr(figures, name), 1, -1) for name in RunFigures._fields if name not in ALONG}
+    return HoleStudy(hole_id, parts[0].motions, **others, **along, path=KEPT, speed=parts[0].speed)

@@ -17,14 +17,15 @@ from zerorev.errors import InputError
 from zerorev.kernels import dynamics
 from zerorev.kernels.arm import angles_along
 from zerorev.model._arrays import Array
-from zerorev.model.dynamics import Load, nominal_drives
+from zerorev.model.dynamics import Dynamics, Load, nominal_drives
+from zerorev.model.robot import Robot
 from zerorev.motion.bodies import bodies_of
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import jacobian
 from zerorev.motion.loads import GRAVITY
 from zerorev.program.neutral import HoleProgram
 
-__all__ = ["Followed", "Manner", "Track", "followed", "track_of"]
+__all__ = ["Followed", "Manner", "Track", "dynamics_of", "followed", "track_of"]
 
 STEP = 1e-3  # [s] between nodes
 MASS_EVERY = 20  # nodes between mass matrices
@@ -209,6 +210,21 @@ class Followed:
         return bodies
 
 
+def dynamics_of(robot: Robot) -> Dynamics:
+    """The masses of a robot.
+
+    Raises:
+        InputError: they are not known.
+    """
+    if robot.dynamics is None:
+        raise InputError(
+            f"the masses of the robot {robot.name} are not known, so that nothing can be simulated",
+            where="robot",
+            accepted="a robot file with dynamics: links, payload_kg",
+        )
+    return robot.dynamics
+
+
 def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> Followed:
     """The reference of a track, slowed until the arm can run it.
 
@@ -221,22 +237,16 @@ def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> F
     Raises:
         InputError: the robot has no dynamics; the track leaves the reach of the branch.
     """
-    dynamics_of = drilling.robot.dynamics
-    if dynamics_of is None:
-        raise InputError(
-            f"the masses of the robot {drilling.robot.name} are not known",
-            where="robot",
-            accepted="a robot file with dynamics: links, payload_kg",
-        )
-    drives = nominal_drives(dynamics_of.payload)
+    masses = dynamics_of(drilling.robot)
+    drives = nominal_drives(masses.payload)
     slowed = 1.0
     for _ in range(MOST_SLOWINGS):
         found = _at_feed(drilling, branch, replace(track, feed=track.feed * slowed), manner, slowed)
         spin = np.abs(np.gradient(found.psi, STEP)).max() / ORIENTATION_SPEED
         ratio = max(spin, float((np.abs(found.qd) / drilling.robot.limits.speed).max()))
-        if dynamics_of.effort_limit is not None:
+        if masses.effort_limit is not None:
             asked = np.abs(found.loaded[0] + drives.inertia * found.qdd) + drives.coulomb
-            ratio = max(ratio, float((asked / (EFFORT * dynamics_of.effort_limit)).max()))
+            ratio = max(ratio, float((asked / (EFFORT * masses.effort_limit)).max()))
         if ratio <= FITS:
             break
         slowed /= ratio

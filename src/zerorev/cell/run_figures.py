@@ -10,10 +10,10 @@ from zerorev.cell.hole_estimate import hole_estimate
 from zerorev.cell.plant import Run
 from zerorev.model._arrays import Array
 
-__all__ = ["KEPT_POINTS", "POINTS", "RunFigures", "deviations", "run_figures"]
+__all__ = ["KEPT", "POINTS", "RunFigures", "deviations", "run_figures"]
 
 POINTS = 801  # of the mean path, evenly by path distance
-KEPT_POINTS = 201  # of a profile that is kept
+KEPT = np.linspace(-1.0, 1.0, 201)  # places along the stroke of what is kept, as shares of it; 0 is the turn
 
 
 class RunFigures(NamedTuple):
@@ -27,7 +27,8 @@ class RunFigures(NamedTuple):
         position: how far the hole is off [m], shape ().
         tilt: of the hole [rad], shape ().
         ovality: of the hole at its entry and exit [m], shape (2,).
-        profile: distance from the mean path along the path [m], shape (2, 201).
+        profile: distance from the mean path along the stroke [m], shape (2, 201).
+        torque: of the drives along the stroke [N m], shape (6, 201).
     """
 
     deviation: Array
@@ -38,6 +39,7 @@ class RunFigures(NamedTuple):
     tilt: Array
     ovality: Array
     profile: Array
+    torque: Array
 
 
 def run_figures(done: Run, axis: Array) -> RunFigures:
@@ -47,7 +49,8 @@ def run_figures(done: Run, axis: Array) -> RunFigures:
         done: a run.
         axis: calibrated axis of the hole less the nominal one [m], base frame, shape (3,).
     """
-    window = 0.5 * float(done.reference.drilling.hole.depth - done.reference.standoff.min())
+    own, depth = done.reference.path, done.reference.drilling.hole.depth
+    window = 0.5 * float(depth - done.reference.standoff.min())
     path, sides = deviations(done)
     inside = np.abs(path) <= window
     greatest, vertical, offset, kept = [], [], [], []
@@ -58,13 +61,13 @@ def run_figures(done: Run, axis: Array) -> RunFigures:
         greatest.append(distance[inside].max())
         vertical.append(np.abs(apart[inside, 2]).max())
         offset.append(np.linalg.norm(mean))
-        kept.append(distance[:: (POINTS - 1) // (KEPT_POINTS - 1)])
-    nodes = np.abs(done.reference.path) <= window
-    swing = np.ptp(done.drive[nodes], axis=0)
+        kept.append(np.interp(KEPT * depth, path, distance))
+    swing = np.ptp(done.drive[np.abs(own) <= window], axis=0)
+    torque = np.array([np.interp(KEPT * depth, own, done.drive[:, joint]) for joint in range(6)])
     hole = hole_estimate(done, axis)
     return RunFigures(
         np.array(greatest), np.array(vertical), np.array(offset), swing,
-        np.array(hole.position), np.array(hole.tilt), hole.ovality, np.array(kept),
+        np.array(hole.position), np.array(hole.tilt), hole.ovality, np.array(kept), torque,
     )  # fmt: skip
 
 

@@ -102,6 +102,7 @@ class StudyFolder:
                 "tilt_rad": (("motion", "set"), study.tilt),
                 "ovality_m": (("motion", "end", "set"), study.ovality),
                 "profile_m": (("motion", "side", "quantile", "path"), study.profile),
+                "torque_nm": (("motion", "joint", "quantile", "path"), study.torque),
                 "speed_m_s": (("motion",), study.speed),
             },
             coords={"joint": np.arange(1, 7), "quantile": list(QUANTILES), "path": study.path},
@@ -139,8 +140,8 @@ def read_holes(path: Path) -> list[HoleStudy]:
         found.append(HoleStudy(
             str(held.attrs["hole"]), tuple(held.attrs["motions"]), held["deviation_m"].values,
             held["vertical_m"].values, held["offset_m"].values, held["swing_nm"].values, held["position_m"].values,
-            held["tilt_rad"].values, held["ovality_m"].values, held["profile_m"].values, held["path"].values,
-            held["speed_m_s"].values,
+            held["tilt_rad"].values, held["ovality_m"].values, held["profile_m"].values,
+            held["torque_nm"].values, held["path"].values, held["speed_m_s"].values,
         ))  # fmt: skip
     return found
 

@@ -11,10 +11,6 @@ from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.cell.ensemble import HoleStudy
-    from zerorev.cell.parameters import ParameterSet
-    from zerorev.model.plan import Plan
-    from zerorev.model.ranges import Cell
-    from zerorev.workers import Machines
 
 __all__ = ["simulate"]
 
@@ -81,33 +77,26 @@ def simulate(
 
         check_place(output)
     from zerorev.cell.ensemble import HoleStudy, study
-    from zerorev.cell.parameters import drawn
+    from zerorev.cell.possible import check_robot, finished, possible_arms
     from zerorev.cell.reference import Manner
     from zerorev.files.cell_file import read_cell
     from zerorev.files.io import read_plan
-    from zerorev.model.ranges import HELD, Cell
+    from zerorev.model.ranges import Cell
     from zerorev.report.words import study as shown
 
     stated = read_plan(plan)
     thrust = stated.settings.thrust if thrust_n is None else thrust_n
     known_arm = Cell() if cell is None else read_cell(cell)
-    if known_arm.robot not in ("", stated.robot.name):
-        raise InputError(
-            f"is of the robot {known_arm.robot}, the plan of {stated.robot.name}", where=str(cell),
-            accepted="a cell file of the plan's robot",
-        )  # fmt: skip
-    # what the tool's file states is held, but for what was fitted to recordings since
-    held = () if stated.tool.load is None else tuple(
-        name for name in ("tool_mass", "tool_lever") if known_arm.ranges[name].basis == "prior"
-    )  # fmt: skip
-    drawn_sets = drawn(sets, seed, known_arm.ranges, vary=HELD if vary_cell else (), held=held)
-    drawn_sets = _near_what_was_measured(stated, drawn_sets, known_arm, where)
+    check_robot(known_arm, stated.robot.name, str(cell))
+    arms = finished(possible_arms(stated, known_arm, sets, seed, vary=vary_cell, machines=where))
+    if (words := shown.kept_words(arms)) is not None:
+        terminal.note(words)
     manner = Manner(
         feed=None if feed_mm_s is None else feed_mm_s * 1e-3, corner=None if corner_mm is None else corner_mm * 1e-3
     )
     folder, known = None, {}
     if output is not None:
-        folder = StudyFolder(output, stated, drawn_sets, seed, manner, thrust)
+        folder = StudyFolder(output, stated, arms.sets, seed, manner, thrust)
         known = folder.known()
         if known:
             terminal.note(f"resuming after {len(known):,} of {len(stated.holes):,} holes in {output}")
@@ -116,7 +105,7 @@ def simulate(
     left_out: dict[str, str] = {}
     with terminal.progress("simulating", len(stated.holes), each="block") as progress:
         for found in study(
-            stated, drawn_sets, manner=manner, thrust=thrust, machines=where, known=known, progress=progress
+            stated, arms.sets, manner=manner, thrust=thrust, machines=where, known=known, progress=progress
         ):
             if not isinstance(found, HoleStudy):
                 left_out[found[0]] = found[1]
@@ -125,39 +114,20 @@ def simulate(
             if folder is not None and found.id not in known:
                 folder.add(numbers[found.id], found)
     answer: dict[str, Any] = shown.answer(
-        studied, left_out, sets=len(drawn_sets), seed=seed, cell=None if cell is None else cell.name
+        studied, left_out, sets=len(arms.sets), seed=seed, cell=None if cell is None else cell.name
     )
     if json:
         terminal.print_json(answer)
     else:
         terminal.out().print(shown.table(studied))
         terminal.out().print(shown.holes_table(studied))
-        terminal.print_lines(shown.lines(studied, left_out, thrust))
+        terminal.print_lines(shown.lines(studied, left_out, thrust, known_arm, stated.tool))
     if figures is not None and studied:
         from zerorev.report.figures.study import write_figures
 
-        for path in write_figures(studied, figures):
+        for path in write_figures(studied, stated.robot.joint_names, figures):
             if not json:
                 terminal.say(f"picture {path}")
     if output is not None and not json:
         terminal.say(f"study written to {output}")
     return FINE if studied and not left_out else FOUND
-
-
-def _near_what_was_measured(plan: Plan, sets: list[ParameterSet], cell: Cell, where: Machines) -> list[ParameterSet]:
-    """The sets of which the baselines are near those that the cell file states, where the plan has such holes."""
-    from zerorev.cell.ensemble import conditioned
-    from zerorev.cell.reference import Manner
-
-    measured = cell.conditioning
-    if measured is None:
-        return sets
-    ids = {hole.hole.id for hole in plan.holes}
-    of_plan = {hole: deviation for hole, deviation in measured.baseline.items() if hole in ids}
-    if not of_plan:
-        terminal.note("the plan has none of the holes whose baselines were measured: no set is dropped")
-        return sets
-    manner = Manner(feed=measured.feed, corner=measured.corner)
-    kept = conditioned(plan, sets, of_plan, manner, factor=measured.factor, machines=where)
-    terminal.note(f"{len(kept):,} of {len(sets):,} sets have baselines near those that were measured")
-    return kept

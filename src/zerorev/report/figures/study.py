@@ -1,4 +1,4 @@
-"""Pictures of a study: how far the tip strays along the path, what each hole gains, and the holes left."""
+"""Pictures of a study: deviation and torques along the path, what each hole gains, and the holes left."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from zerorev.cell.ensemble import ENDS, SIDES, HoleStudy, band
-from zerorev.cell.motions import MotionName
 from zerorev.files.output import make_folder, write_bytes
 from zerorev.model._arrays import Array
 from zerorev.report.figures import style
+from zerorev.report.scene.study_curves import DRAWN, Banded, stray_curve, torque_curve
 
-__all__ = ["drilled", "gains", "stray", "write_figures"]
+__all__ = ["drilled", "gains", "stray", "torques", "write_figures"]
 
-DRAWN: tuple[MotionName, ...] = ("baseline", "plan")
 WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
 COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
 MOST_NAMED = 12  # holes that are named below an axis
@@ -32,8 +31,7 @@ def stray(hole: HoleStudy) -> Figure:
     Args:
         hole: of a study.
     """
-    count = hole.deviation.shape[-1]
-    subtitle = f"hole {hole.id[: style.TITLE_LENGTH]}   |   median and 5 to 95 % of {count} possible arms"
+    subtitle = f"hole {hole.id[: style.TITLE_LENGTH]}   |   median and 5 to 95 % of {hole.sets} possible arms"
     figure = style.headed_figure("How far the tip strays from its mean path", subtitle, 4.4)
     grid = figure.add_gridspec(1, 2)
     axes = [figure.add_subplot(grid[0, 0])]
@@ -44,14 +42,48 @@ def stray(hole: HoleStudy) -> Figure:
         style.label(ax, "path, from the start over the turn to the end", "deviation [mm]" if k == 0 else "")
         ax.axvspan(-0.5, 0.5, color="#f4f4f4", zorder=0, linewidth=0)
         for motion in DRAWN:
-            low, median, high = hole.profile[hole.of(motion), k] * 1e3
-            ax.fill_between(hole.path, low, high, color=COLOURS[motion], alpha=0.2, linewidth=0, zorder=2)
-            ax.plot(hole.path, median, color=COLOURS[motion], linewidth=2.0, zorder=3)
-        ax.set_xticks([-1, 0, 1], ["start", "turn", "end"])
+            _draw(ax, stray_curve(hole, motion, side), COLOURS[motion])
         ax.set_ylim(bottom=0)
-    handles = [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=WORDS[motion]) for motion in DRAWN]
-    style.legend_below(figure, handles, 2)
+    style.legend_below(figure, _handles(), 2)
     return figure
+
+
+def torques(hole: HoleStudy, names: Sequence[str]) -> Figure:
+    """Torques of the drives [N m] over the path, of plan and constant spin: median and 5 to 95 %; six axes.
+
+    Args:
+        hole: of a study.
+        names: of the joints.
+    """
+    subtitle = f"hole {hole.id[: style.TITLE_LENGTH]}   |   median and 5 to 95 % of {hole.sets} possible arms"
+    figure = style.headed_figure("Torques of the drives, on the side of the joint", subtitle, 5.6)
+    grid = figure.add_gridspec(2, 3)
+    for joint, name in enumerate(names):
+        ax = figure.add_subplot(grid[joint // 3, joint % 3])
+        style.bare_axes(ax)
+        ax.set_title(name, size=9.5, color=style.INK, loc="left").set_parse_math(False)
+        ax.axhline(0, color=style.MUTED, linewidth=0.8, zorder=1)
+        for motion in DRAWN:
+            curve = torque_curve(hole, motion, joint)
+            _draw(ax, curve, COLOURS[motion])
+            ax.plot(curve.changes, np.zeros_like(curve.changes), "o", color=COLOURS[motion], markersize=6,
+                    markerfacecolor="white", markeredgewidth=1.6, zorder=4)  # fmt: skip
+        style.label(ax, "", "torque [Nm]" if joint % 3 == 0 else "")
+    changes = Line2D(
+        [], [], color=style.INK, marker="o", linestyle="none", markerfacecolor="white", label="changes sign"
+    )
+    style.legend_below(figure, [*_handles(), changes], 3)
+    return figure
+
+
+def _draw(ax: Axes, curve: Banded, colour: str) -> None:
+    ax.fill_between(curve.path, curve.low, curve.high, color=colour, alpha=0.2, linewidth=0, zorder=2)
+    ax.plot(curve.path, curve.median, color=colour, linewidth=2.0, zorder=3)
+    ax.set_xticks([-1, 0, 1], ["start", "turn", "end"])
+
+
+def _handles() -> list[Line2D]:
+    return [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=WORDS[motion]) for motion in DRAWN]
 
 
 def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
@@ -132,11 +164,12 @@ def _name_holes(axes: Axes, studied: Sequence[HoleStudy]) -> None:
             tick.set_parse_math(False)
 
 
-def write_figures(studied: Sequence[HoleStudy], folder: Path) -> list[Path]:
+def write_figures(studied: Sequence[HoleStudy], names: Sequence[str], folder: Path) -> list[Path]:
     """Write the pictures of a study; what is there of the same name is replaced.
 
     Args:
         studied: holes, one or more.
+        names: of the joints.
         folder: made, if its parent exists.
 
     Returns:
@@ -148,6 +181,7 @@ def write_figures(studied: Sequence[HoleStudy], folder: Path) -> list[Path]:
     write_bytes(files[1], style.png(drilled(studied)))
     for number, hole in enumerate(studied, start=1):
         stem = re.sub(r"[^A-Za-z0-9.-]+", "_", hole.id).strip("._")[:40]
-        files.append(folder / f"stray_{number:03d}_{stem}.png")
-        write_bytes(files[-1], style.png(stray(hole)))
+        for name, figure in (("stray", stray(hole)), ("torques", torques(hole, names))):
+            files.append(folder / f"{name}_{number:03d}_{stem}.png")
+            write_bytes(files[-1], style.png(figure))
     return files

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from rich import box
 from rich.table import Table
@@ -12,8 +12,23 @@ from rich.text import Text
 
 from zerorev.cell.ensemble import ENDS, SIDES, Band, HoleStudy, band
 from zerorev.cell.motions import MotionName
+from zerorev.cell.possible import Arms, held_for
+from zerorev.model.ranges import HELD, Basis, Cell
+from zerorev.model.tool import Tool
+from zerorev.report.words.lost_motion import WHERE_IT_HOLDS
 
-__all__ = ["NAMES", "answer", "band_data", "holes_table", "lines", "range_text", "table"]
+__all__ = [
+    "NAMES",
+    "answer",
+    "band_data",
+    "holes_table",
+    "kept_words",
+    "lines",
+    "range_text",
+    "rests_on",
+    "table",
+    "thrust_words",
+]
 
 DEG = math.degrees(1.0)
 
@@ -138,17 +153,77 @@ def range_text(values: Band, scale: float, digits: int) -> str:
     return f"{median} [{low}, {high}]"
 
 
-def lines(studied: Sequence[HoleStudy], left_out: Mapping[str, str], thrust: float) -> Iterator[Text]:
-    """What to know beside the table."""
+def lines(
+    studied: Sequence[HoleStudy], left_out: Mapping[str, str], thrust: float, cell: Cell, tool: Tool
+) -> Iterator[Text]:
+    """What to know beside the table.
+
+    Args:
+        studied: holes.
+        left_out: why others are not, by id.
+        thrust: of the drill [N].
+        cell: what is known of the arm.
+        tool: of the plan.
+    """
     for hole, why in left_out.items():
         yield Text(f"left out: hole {hole}: {why}")
     if studied:
-        yield Text(
-            "median [5th, 95th percentile] over the sets; friction, stiffness and lost motion are guessed ranges"
-        )
+        yield Text(f"median [5th, 95th percentile] over the sets. {rests_on(cell, tool)}")
         yield Text("the hole is that of a free tip, which no hole guides: position, tilt and ovality are upper bounds")
     if thrust > 0:
-        yield Text(
-            f"with {thrust:g} N of thrust on a free tip; a foot on the part that takes it, and lets the tool turn, "
-            "leaves the arm without"
+        yield Text(f"{thrust_words(thrust)} {WHERE_IT_HOLDS}")
+
+
+def kept_words(arms: Arms) -> str | None:
+    """How many arms are near what was measured; None where nothing was."""
+    if arms.measured is None:
+        return None
+    if not arms.measured:
+        return "the plan has none of the holes whose baselines were measured: no set is dropped"
+    return f"{len(arms.sets):,} of {arms.drawn:,} sets have baselines near those that were measured"
+
+
+def rests_on(cell: Cell, tool: Tool) -> str:
+    """How much of a study rests on guesses: which ranges are priors, and which come from recordings.
+
+    Args:
+        cell: what is known of the arm.
+        tool: whose mass may be stated.
+    """
+    held = held_for(tool, cell)
+    of = {basis: [name for name, each in cell.ranges.items() if each.basis == basis] for basis in get_args(Basis)}
+    guessed = [name for name in of["prior"] if name not in (*HELD, *held)]
+    if not of["fitted"] and not of["conditioned"]:
+        return (
+            f"All {len(guessed)} ranges are guesses: friction, stiffness and lost motion of the gears and the gains of "
+            "the controller are not facts of the robot, and nothing of them was measured."
         )
+    parts = [
+        f"{what}: {', '.join(_grouped(names))}."
+        for what, names in (("Fitted to recordings", of["fitted"]), ("Narrowed by a recording", of["conditioned"]))
+        if names
+    ]
+    count = len(guessed) + len(of["fitted"]) + len(of["conditioned"])
+    return " ".join([*parts, f"The other {len(guessed)} of {count} ranges are guesses."])
+
+
+def thrust_words(thrust: float) -> str:
+    """What thrust does to a gain.
+
+    Args:
+        thrust: of the drill [N], above 0.
+    """
+    return (
+        f"With {thrust:g} N of thrust on a free tip the arm gives way while it drills and springs back before the "
+        "retract: the gain may be lost. No hole guides the tip here, so the deviation is an upper bound."
+    )
+
+
+def _grouped(names: Sequence[str]) -> list[str]:
+    """Names of parameters; the six of the joints as one where all are there."""
+    found: dict[str, None] = {}
+    for name in names:
+        stem = name[:-2] if name[-2:-1] == "_" and name[-1:].isdigit() else name
+        six = [f"{stem}_{joint}" for joint in range(1, 7)]
+        found[f"{stem}_1 to {stem}_6" if stem != name and set(six) <= set(names) else name] = None
+    return list(found)

@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from zerorev.cell.ensemble import HoleStudy, conditioned, study
+from zerorev.cell.ensemble import HoleStudy, study
 from zerorev.cell.motions import MotionName
 from zerorev.cell.parameters import ParameterSet, drawn
+from zerorev.cell.possible import conditioned
 from zerorev.cell.reference import Manner
 from zerorev.model.plan import Plan
 from zerorev.model.settings import Settings
