@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["drilled_hole", "longer_than_wide"]
+__all__ = ["centres", "drilled_hole", "longer_than_wide", "out_of_round"]
 
 TURNED = np.linspace(0.0, np.pi, 721)
 
@@ -14,19 +14,40 @@ def drilled_hole(standoff, across, sections):
 
     Args:
         standoff: of the samples, falling to the turn and rising from it [m], shape (N,).
-        across: where the tip is, across the axis [m], shape (N, 3).
+        across: where the tip is, across the axis [m], shape (N, K).
         sections: stand-off of the sections [m].
     """
+    down, up = centres(standoff, across, sections)
+    slopes = [np.polyfit(sections, down[:, k], 1)[0] for k in range(down.shape[1])]
+    return np.linalg.norm(np.mean(down, axis=0)), np.arctan(np.linalg.norm(slopes)), np.linalg.norm(up - down, axis=1)
+
+
+def centres(standoff, across, sections):
+    """Where the tip crosses each section on its way down, and on its way up, each (len(sections), K)."""
     turn = int(np.argmin(standoff))
-    centres, apart = [], []
-    for z in sections:
-        down = _crossing(standoff, across, z, range(turn - 1, -1, -1))
-        up = _crossing(standoff, across, z, range(turn, len(standoff) - 1))
-        centres.append(down)
-        apart.append(np.linalg.norm(np.subtract(up, down)))
-    centres = np.array(centres)
-    slopes = [np.polyfit(sections, centres[:, k], 1)[0] for k in range(3)]
-    return np.linalg.norm(np.mean(centres, axis=0)), np.arctan(np.linalg.norm(slopes)), np.array(apart)
+    down = [_crossing(standoff, across, z, range(turn - 1, -1, -1)) for z in sections]
+    up = [_crossing(standoff, across, z, range(turn, len(standoff) - 1)) for z in sections]
+    return np.array(down), np.array(up)
+
+
+def longer_than_wide(one, other, radius):
+    """Greatest less least width of the union of two circles, over all ways to hold a calliper."""
+    rim = radius * np.stack([np.cos(2 * TURNED), np.sin(2 * TURNED)], axis=1)
+    points = np.concatenate([one + rim, other + rim])
+    widths = np.ptp(points @ np.stack([np.cos(TURNED), np.sin(TURNED)]), axis=0)
+    return widths.max() - widths.min()
+
+
+def out_of_round(one, other, radius):
+    """Greatest less least radius of the rim of that union about the middle of the two centres."""
+    way = np.stack([np.cos(2 * TURNED), np.sin(2 * TURNED)], axis=1)
+    middle = (one + other) / 2
+    reach = []
+    for centre in (one - middle, other - middle):
+        along = way @ centre
+        reach.append(along + np.sqrt(along**2 + radius**2 - centre @ centre))
+    rim = np.max(reach, axis=0)
+    return rim.max() - rim.min()
 
 
 def _crossing(standoff, across, z, order):
@@ -37,11 +58,3 @@ def _crossing(standoff, across, z, order):
             share = (z - standoff[n]) / (standoff[n + 1] - standoff[n])
             return across[n] + share * (across[n + 1] - across[n])
     raise AssertionError(f"no crossing of {z}")
-
-
-def longer_than_wide(one, other, radius):
-    """Greatest less least width of the union of two circles, over all ways to hold a calliper."""
-    rim = radius * np.stack([np.cos(2 * TURNED), np.sin(2 * TURNED)], axis=1)
-    points = np.concatenate([one + rim, other + rim])
-    widths = np.ptp(points @ np.stack([np.cos(TURNED), np.sin(TURNED)]), axis=0)
-    return widths.max() - widths.min()

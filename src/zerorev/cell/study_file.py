@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from zerorev.files.output import check_whole_folder, write_whole_folder
 from zerorev.model.fingerprint import fingerprint
 from zerorev.model.plan import Plan
 
-__all__ = ["StudyFolder", "check_place", "read_holes"]
+__all__ = ["StoredStudy", "StudyFolder", "check_place", "read_holes", "read_study"]
 
 KIND, FORMAT = "zerorev.study/", "zerorev.study/2"
 MARK = "zarr.json"
@@ -55,10 +55,7 @@ class StudyFolder:
         import zarr
 
         self.path = path
-        values = [tuple(sorted(each.values.items())) for each in sets]
-        # what was planned, not what the check said of it, or when
-        planned = [(hole.hole, hole.motion) for hole in plan.holes]
-        own = fingerprint(plan.robot, plan.tool, plan.settings, planned, values, manner, thrust)
+        own = _fingerprint(plan, [each.values for each in sets], manner, thrust)
         if path.exists():
             stated = _head(path)
             if stated.get("fingerprint") != own:
@@ -113,6 +110,58 @@ class StudyFolder:
             dataset.to_zarr(folder, mode="w", consolidated=False, zarr_format=3)
 
         write_whole_folder(self.path / f"hole_{number:05d}", MARK, fill)
+
+
+class StoredStudy(NamedTuple):
+    """A study that was read.
+
+    Attributes:
+        holes: that are finished, in the plan's order.
+        sets: how many.
+        seed: of them.
+        thrust: of the drill [N].
+    """
+
+    holes: list[HoleStudy]
+    sets: int
+    seed: int
+    thrust: float
+
+
+def read_study(path: Path, plan: Plan) -> StoredStudy:
+    """A study of a plan.
+
+    Args:
+        path: of its folder.
+        plan: that was studied.
+
+    Raises:
+        InputError: no study, or one of another plan.
+    """
+    import zarr
+
+    head = _head(path)
+    try:
+        table = np.asarray(zarr.open_array(path / "parameters", mode="r")[:])
+        sets = [dict(zip(head["parameters"], map(float, row), strict=True)) for row in table]
+        manner, thrust, seed = Manner(**head["manner"]), float(head["thrust_n"]), int(head["seed"])
+    except Exception as error:  # what zarr raises on a damaged folder is of many kinds
+        raise InputError(
+            f"its parameters are damaged: {error}", where=str(path), accepted="remove the folder; it is made again"
+        ) from error
+    if head["fingerprint"] != _fingerprint(plan, sets, manner, thrust):
+        raise InputError(
+            f"is a study of another plan than {plan.name or 'this one'}", where=str(path),
+            accepted="a study of the same plan file, which zerorev simulate writes",
+        )  # fmt: skip
+    return StoredStudy(read_holes(path), len(sets), seed, thrust)
+
+
+def _fingerprint(plan: Plan, sets: Sequence[Mapping[str, float]], manner: Manner, thrust: float) -> str:
+    values = [tuple(sorted(each.items())) for each in sets]
+    # what was planned, not what the check said of it, or when
+    planned = [(hole.hole, hole.motion) for hole in plan.holes]
+    return fingerprint(plan.robot, plan.tool, plan.settings, planned, values, manner, thrust)
 
 
 def read_holes(path: Path) -> list[HoleStudy]:

@@ -18,7 +18,7 @@ from zerorev.model._arrays import Array
 from zerorev.report.figures import style
 from zerorev.report.scene.study_curves import DRAWN, Banded, stray_curve, torque_curve
 
-__all__ = ["drilled", "gains", "stray", "torques", "write_figures"]
+__all__ = ["bars", "drilled", "gains", "name_holes", "stray", "torques", "write_figures"]
 
 WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
 COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
@@ -104,10 +104,10 @@ def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
     for k in range(len(SIDES)):
         bands = np.array([band(hole.gain()[k]) for hole in studied]) * 100
         x = np.arange(len(studied)) + (k - 0.5) * 0.24
-        _bars(axes, x, bands, colours[k], "os"[k])
+        bars(axes, x, bands, colours[k], "os"[k])
     axes.axhline(0, color=style.MUTED, linewidth=0.8)
     axes.set_ylim(max(axes.get_ylim()[0], -120), 105)
-    _name_holes(axes, studied)
+    name_holes(axes, [hole.id for hole in studied])
     handles = [
         Line2D([], [], color=colours[k], marker="os"[k], linestyle="none", label=WORDS[side])
         for k, side in enumerate(SIDES)
@@ -140,9 +140,9 @@ def drilled(studied: Sequence[HoleStudy]) -> Figure:
         for k, motion in enumerate(DRAWN):
             bands = np.array([band(figure_of(hole, hole.of(motion))) for hole in studied]) * scale
             x = np.arange(len(studied)) + (k - 0.5) * 0.24
-            _bars(axes, x, bands, COLOURS[motion], "os"[k])
+            bars(axes, x, bands, COLOURS[motion], "os"[k])
         axes.set_ylim(bottom=0)
-        _name_holes(axes, studied)
+        name_holes(axes, [hole.id for hole in studied])
     handles = [
         Line2D([], [], color=COLOURS[motion], marker="os"[k], linestyle="none", label=WORDS[motion])
         for k, motion in enumerate(DRAWN)
@@ -151,15 +151,16 @@ def drilled(studied: Sequence[HoleStudy]) -> Figure:
     return figure
 
 
-def _bars(axes: Axes, x: npt.NDArray[np.floating], bands: npt.NDArray[np.floating], colour: str, marker: str) -> None:
+def bars(axes: Axes, x: npt.NDArray[np.floating], bands: npt.NDArray[np.floating], colour: str, marker: str) -> None:
     """Medians with bars from the 5th to the 95th percentile; bands of shape (n, 3)."""
     away = np.abs(bands[:, [1, 2]] - bands[:, [0]]).T
     axes.errorbar(x, bands[:, 0], away, fmt=marker, color=colour, capsize=2.5, linewidth=1.2, markersize=5)
 
 
-def _name_holes(axes: Axes, studied: Sequence[HoleStudy]) -> None:
-    if len(studied) <= MOST_NAMED:
-        axes.set_xticks(range(len(studied)), [hole.id[:16] for hole in studied])
+def name_holes(axes: Axes, ids: Sequence[str]) -> None:
+    """Ids below the axes, where they are few."""
+    if len(ids) <= MOST_NAMED:
+        axes.set_xticks(range(len(ids)), [each[:16] for each in ids])
         for tick in axes.get_xticklabels():
             tick.set_parse_math(False)
 
