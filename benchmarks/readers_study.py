@@ -28,11 +28,12 @@ from zerorev.cell.recordings.krc4_write import write_krc4
 from zerorev.cell.recordings.read import read_recording
 from zerorev.cell.recordings.rsi import MAX_DOCUMENTS
 from zerorev.cell.recordings.table import MAX_ROWS as MOST_RECORDED
+from zerorev.files.hole_list import MOST_PASTED, in_base_frame, read_hole_list
+from zerorev.files.hole_meaning import AS_IN_A_JOB
 from zerorev.files.io import plan_to_json, read_plan
 from zerorev.files.map_file import read_map_file
 from zerorev.files.schema import MOST_HOLES
-from zerorev.files.sheet import MAX_ROWS as MOST_PASTED
-from zerorev.files.sheet import sheet_rows
+from zerorev.files.table_layout import Given
 from zerorev.files.text import MAX_BYTES, MAX_ROWS
 from zerorev.files.text import MAX_VALUES as JSON_VALUES
 from zerorev.files.urdf import MOST_PARTS, read_urdf
@@ -135,7 +136,8 @@ def _pasted(folder: Path) -> Path:
 
 
 def _sheet(path: Path) -> object:
-    return sheet_rows(path.read_text(), "base_y", zr.read_tool("thesis_drill"), np.eye(4))
+    listed = read_hole_list(path.read_text(), Given(), AS_IN_A_JOB, most=MOST_PASTED)
+    return in_base_frame(listed, "base_y", zr.read_tool("thesis_drill"), np.eye(4))
 
 
 def _recorded_table(folder: Path) -> Path:

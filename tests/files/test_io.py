@@ -217,6 +217,17 @@ def test_bad_jobs(case: str, tmp_path: Path) -> None:
         assert part in message, message
 
 
+def test_what_a_script_repeats_by_aliases_is_read(tmp_path: Path) -> None:
+    text = JOB.replace("[0, -2, 0]", "&down [0, -2, 0]").replace("[0, -1, 0]", "*down")
+    text = text.replace("depth_mm: 50}", "depth_mm: &deep 50}").replace("depth_mm: 50\n", "depth_mm: *deep\n")
+    first, second = job_of(tmp_path, text).holes
+    np.testing.assert_array_equal(first.direction, second.direction)
+    assert first.depth == second.depth == 0.05
+    for wrong in ("holes: *all", "part_frame: *deep_one", "near_joints_deg: *many"):
+        head = f"a: &many {[[0] * 3]}\nb: &deep_one {{x: 1}}\n"
+        assert "aliases (*name)" in refusal(lambda head=head, wrong=wrong: job_of(tmp_path, head + wrong))
+
+
 def test_an_empty_list_of_holes(tmp_path: Path) -> None:
     message = refusal(lambda: job_of(tmp_path, JOB[: JOB.index("holes:")] + "holes: []\n"))
     assert "line 6, holes" in message
@@ -236,8 +247,8 @@ def test_of_many_problems_the_first_few_are_listed(tmp_path: Path) -> None:
     ("csv", "expected"),
     [
         (CSV.replace(",depth_mm", ""), ["line 1", "no column depth_mm", "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"]),
-        (CSV.replace(",", ";"), ["line 1", "no column id", "separated by commas"]),
-        (CSV.replace("depth_mm", "depth_mm,note,colour"), ["line 1", "unknown column 'note', 'colour'"]),
+        (CSV.replace(",", "|"), ["line 1", "no column id", "separated by commas, semicolons or tabs"]),
+        (CSV.replace("depth_mm", "depth_mm,note,colour"), ["line 2: 8 cells", "line 3: 8 cells (accepted: 10 cells)"]),
         (CSV.replace("depth_mm", "depth_mm,id"), ["line 1", "a column appears twice"]),
         (CSV.replace("40.5", "deep"), ["line 3, column depth_mm", "'deep' is not a finite number", "12.5"]),
         (CSV.replace("40.5", "nan"), ["line 3, column depth_mm", "'nan' is not a finite number"]),

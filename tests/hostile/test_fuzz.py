@@ -29,13 +29,15 @@ from oracles.hostile_inputs import changed_bytes, changed_data, made_up
 from zerorev.errors import ZerorevError
 from zerorev.files.cell_file import CellFile, read_cell
 from zerorev.files.conversion import robot_data, settings_data
+from zerorev.files.hole_list import in_base_frame, read_hole_list
+from zerorev.files.hole_meaning import AS_IN_A_JOB
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json, read_robot, read_tool
 from zerorev.files.map_file import read_map_file
 from zerorev.files.map_schema import MapFile
 from zerorev.files.part import Part
 from zerorev.files.plan_schema import PlanFile
 from zerorev.files.schema import JobFile, RobotFile, ToolFile
-from zerorev.files.sheet import sheet_rows
+from zerorev.files.table_layout import Given
 from zerorev.files.text import json_text
 from zerorev.files.urdf import read_urdf
 from zerorev.files.yaml_text import yaml_text
@@ -245,26 +247,46 @@ def check_table(data: bytes, folder: Path) -> None:
 
 
 def check_rows(holes: list[zr.Hole], data: bytes) -> None:
-    """A table's rows by the module `csv` and `float` alone."""
-    lines = text_of(data).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    header, *rows = [row for row in csv.reader(lines) if any(cell.strip() for cell in row)]
-    rows = [dict(zip([name.strip() for name in header], row, strict=True)) for row in rows]
-    assert len(holes) == len(rows)
-    for hole, row in zip(holes, rows, strict=True):
-        numbers = {key: float(cell) for key, cell in row.items() if key != "id"}
-        x, y, z, i, j, k, depth = (numbers[key] for key in ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm"))
-        said = {"id": row["id"].strip(), "target_mm": [x, y, z], "direction": [i, j, k], "depth_mm": depth}
-        same_hole(hole, said, {})
+    """Each hole stands in a line of its own: its id, and all of its numbers, by the module `csv` and `float` alone."""
+    lines = [line for line in re.split(r"\r\n|\r|\n", data.decode(encoding_of(data))) if line.strip()]
+    left = list(range(len(lines)))
+    for hole in holes:
+        numbers = [*hole.target * 1e3, hole.depth * 1e3]
+        at = next(n for n in left if any(has(cells, hole, numbers) for cells in ways(lines[n])))
+        left = left[left.index(at) + 1 :]  # in the order of the file
+
+
+def encoding_of(data: bytes) -> str:
+    return "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
+
+
+def ways(line: str) -> list[list[str]]:
+    """The cells of a line, by each of the three separators."""
+    found = []
+    for delimiter in "\t;,":
+        try:
+            found += [[cell.strip() for cell in row] for row in csv.reader([line], delimiter=delimiter)]
+        except csv.Error:
+            continue
+    return found
+
+
+def has(cells: list[str], hole: zr.Hole, numbers: list[float]) -> bool:
+    there = []
+    for cell in cells:
+        try:
+            there.append(float(cell.replace(",", ".").replace("\u2212", "-")))
+        except ValueError:
+            continue
+    named = hole.id in map(one_line, cells)
+    return named and all(any(math.isclose(x, y, rel_tol=1e-9, abs_tol=1e-9) for y in there) for x in numbers)
 
 
 def check_sheet(data: bytes, _: Path) -> None:
-    tool = read_tool("thesis_drill")
-    rows = sheet_rows(text_of(data), "base_y", tool, np.eye(4))
-    assert all((row.hole is None) != (row.problem is None) for row in rows)
-    for row in rows:
-        if row.hole is not None:
-            numbers = [float(cell.replace(",", ".")) for cell in row.cells if cell and one_line(cell) != row.hole.id]
-            assert np.isin(np.round(row.hole.target * 1e3, 6), np.round(numbers, 6)).all()
+    listed = read_hole_list(text_of(data), Given(header=False), AS_IN_A_JOB)
+    listed = in_base_frame(listed, "base_y", read_tool("thesis_drill"), np.eye(4))
+    assert all((row.hole is None) != (row.problem is None) for row in listed.rows)
+    check_rows([row.hole for row in listed.rows if row.hole is not None], data)
 
 
 def check_cell(data: bytes, folder: Path) -> None:

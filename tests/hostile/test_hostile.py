@@ -107,7 +107,7 @@ def test_a_number_beyond_all_arms(command, key, value, said, tmp_path, capsys):
         ("a: " + "{a: " * 100_000, "nested too deep"),
         ("holes: [" + "1, " * 600_000 + "]", "more than 500,000 values"),
         ("{" + ", ".join(f"k{n}: 1" for n in range(5_000)) + "}", "more than 1,000 keys"),
-        ("a: &x [1]\nb: *x\n", "aliases"),
+        ("a: &x [[1]]\nb: *x\n", "aliases"),
         ("--- {}\n--- {}\n", "a second document"),
     ],
 )

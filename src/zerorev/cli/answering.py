@@ -41,6 +41,8 @@ def run(
         KeyboardInterrupt: the user stopped it; says what is kept.
         ZerorevError: as `answers` has it.
     """
+    for said in job.notes:
+        terminal.note(said)
     head = unanswered(job, strokes)
     shown, kept = Shown(head), list[HolePlan]()
     with nullcontext() if output is None else Part(output, head, job.holes) as part:

@@ -12,15 +12,18 @@ from typing import Any
 
 from zerorev.errors import InputError
 from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
+from zerorev.files.hole_list import all_of, given_of, in_base_frame, read_hole_list, text_of_list
+from zerorev.files.hole_meaning import as_in_a_job, meaning_of
 from zerorev.files.output import write_text
 from zerorev.files.part import part_document
 from zerorev.files.plan_conversion import plan_from
 from zerorev.files.plan_data import FORMS, plan_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
 from zerorev.files.schema import Form, HoleForm, JobFile, RobotFile, SettingsForm, ToolFile
-from zerorev.files.text import Document, csv_rows, json_document, json_text, read_text
+from zerorev.files.text import Document, json_document, json_text, read_bytes, read_text
 from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document
+from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
@@ -217,42 +220,62 @@ def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bo
         tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
     with inside(document.file):
         settings, T_base_part = settings_from(form), frame_from(form.part_frame)
-    holes: dict[str, Hole] = {}
-    for where, hole in _hole_forms(form, document, folder, depth_needed):
-        if hole.id in holes:
-            raise InputError(f"the id '{hole.id}' is used twice", where=where, accepted="ids that differ")
-        with inside(where):
-            holes[hole.id] = hole_from(hole, form.psi_reference, tool, T_base_part)
+    notes: tuple[str, ...] = ()
+    if isinstance(form.holes, str):
+        holes, notes = _table(form, document, folder, tool, T_base_part, depth_needed=depth_needed)
+        notes = tuple(f"{form.holes}: {note}" for note in notes)
+    else:
+        _check_listed(form, document, depth_needed=depth_needed)
+        holes = _holes(form, document, tool, T_base_part)
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
-    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name, reference)
+    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name, reference, notes)
 
 
-def _hole_forms(
-    form: JobFile, document: Document, folder: Path | None, depth_needed: bool
-) -> list[tuple[str, HoleForm]]:
-    """The holes of a job or of its CSV, each with where it stands."""
-    if not isinstance(form.holes, str):
-        listed = [(document.where(("holes", i)), hole) for i, hole in enumerate(form.holes)]
-        for where, hole in listed:
-            if depth_needed and hole.depth_mm is None:
-                accepted = HoleForm.model_fields["depth_mm"].description or ""
-                raise InputError("is missing", where=f"{where}.depth_mm (hole {hole.id})", accepted=accepted)
-        return listed
+def _check_listed(form: JobFile, document: Document, *, depth_needed: bool) -> None:
+    """Refuse what is missing in a list of holes that stands in a job, and keys that are for a CSV alone."""
+    for key in ("columns", "unit", "decimal"):
+        if getattr(form, key) is not None:
+            what, accepted = "goes with a CSV file of holes", "holes: the path of a CSV file; or without this key"
+            raise InputError(what, where=document.where((key,)), accepted=accepted)
+    for n, hole in enumerate(form.holes):
+        assert isinstance(hole, HoleForm)
+        if depth_needed and hole.depth_mm is None and form.depth_mm is None:
+            accepted = HoleForm.model_fields["depth_mm"].description or ""
+            where = f"{document.where(('holes', n))}.depth_mm (hole {hole.id})"
+            raise InputError("is missing", where=where, accepted=accepted)
+
+
+def _holes(form: JobFile, document: Document, tool: Tool, T_base_part: Array) -> dict[str, Hole]:
+    """The holes that stand in a job, by their ids."""
+    holes: dict[str, Hole] = {}
+    meaning = meaning_of(form)
+    for n, listed in enumerate(form.holes):
+        assert isinstance(listed, HoleForm)
+        where = document.where(("holes", n))
+        if listed.id in holes:
+            raise InputError(f"the id '{listed.id}' is used twice", where=where, accepted="ids that differ")
+        with inside(where):
+            hole = as_in_a_job(listed, meaning)
+            holes[hole.id] = hole_from(hole, form.psi_reference, tool, T_base_part)
+    return holes
+
+
+def _table(
+    form: JobFile, document: Document, folder: Path | None, tool: Tool, T_base_part: Array, *, depth_needed: bool
+) -> tuple[dict[str, Hole], tuple[str, ...]]:
+    """The holes of a job's CSV, by their ids, and what was left out of it."""
+    assert isinstance(form.holes, str)
     if folder is None:
         accepted = "a list of holes in the job itself"
         raise InputError("another file is not opened from here", where=document.where(("holes",)), accepted=accepted)
-    path, holes = folder / form.holes, []
+    path = folder / form.holes
     with inside(document.where(("holes",))):
-        text = read_text(path, "a CSV file of holes, or a list of holes")
-    columns = ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
-    for line, cells in csv_rows(text, str(path), "id", columns, () if depth_needed else ("depth_mm",)):
-        target, direction = ([cells[name] for name in names] for names in (columns[:3], columns[3:6]))
-        mapping = {"id": cells["id"], "target_mm": target, "direction": direction, "depth_mm": cells.get("depth_mm")}
-        row = Document(str(path), mapping, {(): line})
-        holes.append((row.where(), checked(HoleForm, row)))
-    if not holes:
-        raise InputError("no holes", where=str(path), accepted="one row or more below the header")
-    return holes
+        content = read_bytes(path, "a CSV file of holes, or a list of holes")
+    with inside(str(path)):
+        text = text_of_list(content)
+        listed = read_hole_list(text, given_of(form), meaning_of(form), depth_needed=depth_needed)
+        rows = all_of(in_base_frame(listed, form.psi_reference, tool, T_base_part))
+    return {row.hole.id: row.hole for row in rows if row.hole is not None}, listed.notes
 
 
 def _shipped(kind: str) -> list[str]:

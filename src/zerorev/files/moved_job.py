@@ -7,16 +7,18 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from zerorev.files.hole_list import given_of, read_hole_list, text_of_list
+from zerorev.files.hole_meaning import meaning_of
 from zerorev.files.output import check_file, write_text
-from zerorev.files.schema import HoleForm
-from zerorev.files.text import csv_rows, read_text
+from zerorev.files.schema import JobFile
+from zerorev.files.text import read_bytes, read_text
 from zerorev.files.units import deg, mm, plain
 from zerorev.files.yaml_text import yaml_document, yaml_text
 from zerorev.model._arrays import Array, rpy_of
 
 __all__ = ["frame_text", "write_job"]
 
-COLUMNS = ("x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
+OF_A_CSV = ("columns", "unit", "decimal", "normals", "point", "depth_mm", "breakthrough_mm")
 
 
 def frame_text(T_base_part: Array) -> dict[str, list[float]]:
@@ -47,7 +49,8 @@ def write_job(
     data: dict[str, Any] = dict(yaml_document(read_text(source, "a job file (YAML)"), str(source)).data)
     data.setdefault("name", source.stem)
     if ids is not None:
-        data["holes"] = [hole for hole in _listed(data["holes"], source.parent) if str(hole["id"]) in ids]
+        holes = _listed(data, source.parent) if isinstance(data["holes"], str) else data["holes"]
+        data["holes"] = [hole for hole in holes if str(hole["id"]) in ids]
     if T_base_part is not None:
         data["part_frame"] = frame_text(T_base_part)
     start, end = source.resolve().parent, target.resolve().parent
@@ -60,14 +63,11 @@ def write_job(
     write_text(target, head + yaml_text(data))
 
 
-def _listed(holes: Any, folder: Path) -> list[dict[str, Any]]:
-    """The holes of a job as its list has them, also where they stand in a CSV file."""
-    if not isinstance(holes, str):
-        return list(holes)
-    path = folder / holes
-    listed = []
-    for _, cells in csv_rows(read_text(path, "a CSV file of holes"), str(path), "id", COLUMNS, ("depth_mm",)):
-        hole = {"id": cells["id"], "target_mm": [cells[name] for name in COLUMNS[:3]],
-                "direction": [cells[name] for name in COLUMNS[3:6]], "depth_mm": cells.get("depth_mm")}  # fmt: skip
-        listed.append({key: value for key, value in hole.items() if key in HoleForm.model_fields and value is not None})
-    return listed
+def _listed(data: dict[str, Any], folder: Path) -> list[dict[str, Any]]:
+    """The holes of a job's CSV as a list has them; what the job says of the CSV is done, and taken out of it."""
+    form = JobFile.model_validate(data)
+    text = text_of_list(read_bytes(folder / data["holes"], "a CSV file of holes"))
+    listed = read_hole_list(text, given_of(form), meaning_of(form), depth_needed=False)
+    for key in OF_A_CSV:
+        data.pop(key, None)
+    return [row.form.model_dump(exclude_none=True) for row in listed.rows if row.form is not None]

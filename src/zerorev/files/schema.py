@@ -18,6 +18,7 @@ __all__ = [
     "MOST_BREAKPOINTS",
     "MOST_HOLES",
     "Angle",
+    "ColumnsForm",
     "Depth",
     "DynamicsForm",
     "Form",
@@ -226,6 +227,26 @@ class HoleForm(Form):
     )
 
 
+class ColumnsForm(Form):
+    """How a CSV file of holes calls its columns, where it does not call them so."""
+
+    id: Name | None = Field(default=None, description="text: the column of the ids")
+    x_mm: Name | None = Field(default=None, description="text: the column of the point's x")
+    y_mm: Name | None = Field(default=None, description="text: the column of the point's y")
+    z_mm: Name | None = Field(default=None, description="text: the column of the point's z")
+    i: Name | None = Field(default=None, description="text: the column of the direction's x")
+    j: Name | None = Field(default=None, description="text: the column of the direction's y")
+    k: Name | None = Field(default=None, description="text: the column of the direction's z")
+    depth_mm: Name | None = Field(default=None, description="text: the column of the depth")
+    entry_x_mm: Name | None = Field(default=None, description="text: the column of the entry point's x")
+    entry_y_mm: Name | None = Field(default=None, description="text: the column of the entry point's y")
+    entry_z_mm: Name | None = Field(default=None, description="text: the column of the entry point's z")
+    exit_x_mm: Name | None = Field(default=None, description="text: the column of the exit point's x")
+    exit_y_mm: Name | None = Field(default=None, description="text: the column of the exit point's y")
+    exit_z_mm: Name | None = Field(default=None, description="text: the column of the exit point's z")
+    branch: Name | None = Field(default=None, description="text: the column of the only IK branch to search")
+
+
 class JobFile(SettingsForm):
     """A job file, YAML: a robot, a tool, holes, and how they are to be drilled."""
 
@@ -256,4 +277,29 @@ class JobFile(SettingsForm):
     ] = Field(
         description="a list of one hole or more, or the path of a CSV file with the columns "
         "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"
+    )
+    depth_mm: Depth | None = Field(
+        default=None, description="a number above 0 [mm]: the stroke of each hole that has none of its own"
+    )
+    normals: Literal["in", "out"] = Field(
+        default="in", description="in or out: whether directions point into the material, or out of it"
+    )
+    point: Literal["bottom", "entry"] = Field(
+        default="bottom",
+        description="bottom or entry: whether targets are bottoms of strokes, or points where the drill enters; "
+        "the bottom is then depth_mm further along the direction",
+    )
+    breakthrough_mm: Annotated[Length, Field(ge=0)] = Field(
+        default=0.0, description="a number, 0 or more [mm]: how far the tip runs beyond the bottom of each hole"
+    )
+    columns: ColumnsForm | None = Field(
+        default=None,
+        description="a mapping of columns to the names that a CSV file has for them, e.g. {x_mm: LOCX, y_mm: LOCY}",
+    )
+    unit: Literal["mm", "m", "in"] | None = Field(
+        default=None,
+        description="mm, m or in: of the lengths in a CSV file, but for columns whose name says mm; left out: mm",
+    )
+    decimal: Literal["point", "comma"] | None = Field(
+        default=None, description="point or comma: the decimal sign in a CSV file; left out, it is found"
     )

@@ -258,7 +258,8 @@ def table_lines(text: str, file: str) -> list[str]:
     lines = re.split(r"\r\n|\n|\r", text.removesuffix("\n"))
     for number, line in enumerate(lines, 1):
         if CONTROL.search(line):
-            raise InputError("holds a control character", where=f"{file}, line {number}", accepted="CSV")
+            where = f"{file}, line {number}" if file else f"line {number}"
+            raise InputError("holds a control character", where=where, accepted="CSV")
     return lines
 
 

@@ -29,6 +29,7 @@ from zerorev.visible import is_visible
 __all__ = ["MAX_VALUES", "yaml_document", "yaml_text"]
 
 MAX_VALUES = 500_000  # of one file: those of some 30,000 holes
+MAX_REPEATED = 16  # entries of a list that an alias repeats
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the latter, ten times as slow, where libyaml is missing
 _TAG = "tag:yaml.org,2002:"
@@ -71,6 +72,7 @@ class _Reading:
         self.lines: dict[FieldPath, int] = {}
         self._events = yaml.parse(text, Loader=_LOADER)
         self._values = 0
+        self._named: dict[str, Any] = {}  # values and short lists of values, by their anchors
 
     def document(self) -> Any:
         self._next()  # the stream begins
@@ -92,10 +94,14 @@ class _Reading:
         self._values += 1
         if self._values > MAX_VALUES:
             _refuse(f"more than {MAX_VALUES:,} values (a CSV file takes more holes)", event)
+        if isinstance(event, AliasEvent):
+            return self._repeated(event)
+        if event.anchor is not None:  # type: ignore[attr-defined]
+            self._named.pop(event.anchor, None)  # type: ignore[attr-defined]
         if isinstance(event, ScalarEvent):
-            return _scalar(event)
-        if isinstance(event, AliasEvent):  # a few of them can blow a small file up to any size
-            _refuse("aliases (*name) are not read", event)
+            found = _scalar(event)
+            self._name(event, found)
+            return found
         if len(path) == MAX_DEPTH:
             _refuse(f"is nested too deep: more than {MAX_DEPTH} levels", event)
         if isinstance(event, MappingStartEvent):
@@ -103,10 +109,26 @@ class _Reading:
             return self._mapping(path)
         assert isinstance(event, SequenceStartEvent)
         _check_tag(event, "seq")
-        found: list[Any] = []
+        found, begin = [], event
         while not isinstance(event := self._next(), SequenceEndEvent):
             found.append(self._value(event, (*path, len(found))))
+        if len(found) <= MAX_REPEATED and not any(isinstance(value, (list, dict)) for value in found):
+            self._name(begin, found)
         return found
+
+    def _name(self, event: ScalarEvent | SequenceStartEvent, value: Any) -> None:
+        if event.anchor is not None:
+            self._named[event.anchor] = value
+
+    def _repeated(self, event: AliasEvent) -> Any:
+        """What an alias stands for, which is short: else a few of them can blow a small file up to any size."""
+        if event.anchor not in self._named:
+            _refuse("aliases (*name) are read of single values and short lists alone; JSON is read, too", event)
+        value = self._named[event.anchor]
+        if not isinstance(value, list):
+            return value
+        self._values += len(value)
+        return list(value)
 
     def _mapping(self, path: FieldPath) -> dict[str, Any]:
         found: dict[str, Any] = {}

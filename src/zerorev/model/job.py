@@ -45,6 +45,7 @@ class Job:
         name: of the job; names the program.
         psi_reference: what the spins of all holes are counted from where the part is moved: one of
             `zerorev.model.hole.REFERENCES`, or a vector in the part frame; None: their own `psi_zero` moves with it.
+        notes: what was left out where the files of the job were read, in words.
     """
 
     robot: Robot
@@ -54,6 +55,7 @@ class Job:
     T_base_part: Array = field(default_factory=lambda: np.eye(4))
     name: str = "job"
     psi_reference: str | tuple[float, ...] | None = None
+    notes: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         """Check that there are holes and that their ids differ."""

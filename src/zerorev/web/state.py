@@ -123,7 +123,7 @@ class State:
 
 def opened_job(job: Job) -> State:
     """A job of which nothing is planned yet, its first hole selected."""
-    return State(job, selected=job.holes[0].id)
+    return State(job, selected=job.holes[0].id, outcome="; ".join(job.notes) or None)
 
 
 def opened_plan(plan: Plan) -> State:

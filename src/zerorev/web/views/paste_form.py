@@ -9,21 +9,31 @@ from html import escape
 from nicegui import background_tasks, events, ui
 
 from zerorev.errors import InputError
-from zerorev.files.sheet import COLUMNS, SheetRow, sheet_rows
+from zerorev.files.hole_list import MOST_PASTED, HoleList, ListedHole, in_base_frame, read_hole_list, text_of_list
+from zerorev.files.hole_meaning import Meaning
+from zerorev.files.table_layout import COLUMNS, KNOWN, Given
 from zerorev.model.hole import Hole
+from zerorev.model.job import Job
 from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import with_holes
 from zerorev.web.throttle import throttled
-from zerorev.web.views.fields import ends, form, said
+from zerorev.web.views.fields import Fields, ends, form, number, said
 from zerorev.web.views.hole_form import reference_of
 from zerorev.web.views.opener import file_picker
 
 __all__ = ["paste_dialog"]
 
 LARGEST = 4 * 2**20  # [bytes] of a CSV file, which is shown as text: more than its rows may be
+MOST_DEPTH = 1e6  # [mm]
 SHOWN = 200  # rows of the preview; all are taken
 EXAMPLE = "B1\t0\t40\t0\t1\t0\t0\t40"
+CHOICES: dict[str, tuple[str, dict[str | None, str]]] = {
+    "unit": ("lengths", {None: "mm", "in": "inches", "m": "metres"}),
+    "decimal": ("decimal sign", {None: "as found", "point": "point", "comma": "comma"}),
+    "normals": ("directions point", {"in": "into the material", "out": "out of the material"}),
+    "point": ("points are", {"bottom": "bottoms of the strokes", "entry": "where the drill enters"}),
+}
 
 
 def paste_dialog(session: Session) -> Callable[[], None]:
@@ -38,13 +48,20 @@ def paste_dialog(session: Session) -> Callable[[], None]:
     with card:
         ui.label(
             f"Copy rows there and paste them here, with the cells {', '.join(COLUMNS)}, or with a header that names "
-            "them. Tabs, semicolons or commas between cells; decimal point or comma."
+            "them. Tabs, semicolons or commas between cells; decimal point or comma. Below they stand as understood: "
+            "bottom of the stroke [mm], direction into the material, stroke [mm]."
         ).classes("zr-muted")
         pasted = (
             ui.textarea(placeholder=EXAMPLE)
             .classes("zr-paste")
             .props('outlined dense rows=6 aria-label="rows of holes" data-testid="paste-text" debounce=200')
         )
+        fields = Fields()
+        with ui.element("div").classes("zr-group zr-three"):
+            for key, (label, options) in CHOICES.items():
+                fields.choice((key,), label, f"paste-{key}", options)
+            fields.text(("depth_mm",), "depth where none is given [mm]", "paste-depth").props('inputmode="decimal"')
+            fields.text(("columns",), "other names of columns", "paste-columns", placeholder="x_mm=LOCX, y_mm=LOCY")
         with ui.element("div").classes("zr-between"):
             csv = ui.button("Open a CSV file …", icon="folder_open").props(
                 'flat no-caps dense data-testid="paste-file"'
@@ -60,32 +77,37 @@ def paste_dialog(session: Session) -> Callable[[], None]:
         job, text = session.state.job, str(pasted.value or "")
         good.clear()
         take.set_enabled(False)
+        fields.show([])
         if job is None or not text.strip():
-            show([])
+            show(HoleList(()))
             return
-        taken = {hole.id for hole in job.holes}
-        understand = partial(sheet_rows, text, reference_of(job), job.tool, job.T_base_part, taken)
+        try:
+            understand = partial(_understood, text, job, *_meant(fields))
+        except InputError as error:
+            fields.show([((error.where,), error)])
+            show(HoleList(()))
+            return
 
         async def understood() -> None:
-            rows: Sequence[SheetRow] | InputError
+            listed: HoleList | InputError
             try:
-                rows = await aside(understand)
+                listed = await aside(understand)
             except InputError as error:
-                rows = error
+                listed = error
             if newest is asked and not dialog.is_deleted:
-                show(rows)
+                show(listed)
 
         verdict.set_text("reading …")
         background_tasks.create(understood())
 
-    def show(rows: Sequence[SheetRow] | InputError) -> None:
-        if isinstance(rows, InputError):
-            preview.set_content(f'<p class="zr-problem">{escape(str(rows))}</p>')
+    def show(listed: HoleList | InputError) -> None:
+        if isinstance(listed, InputError):
+            preview.set_content(f'<p class="zr-problem">{escape(str(listed))}</p>')
             verdict.set_text("nothing can be taken")
         else:
-            good.extend(row.hole for row in rows if row.hole is not None)
-            preview.set_content(_table(rows))
-            verdict.set_text(_verdict(rows))
+            good.extend(row.hole for row in listed.rows if row.hole is not None)
+            preview.set_content(_table(listed.rows))
+            verdict.set_text("; ".join([_verdict(listed.rows), *listed.notes]))
         take.set_enabled(bool(good))
         take.set_text(f"Take {len(good)} hole{'s' if len(good) > 1 else ''}" if good else "Take")
 
@@ -99,14 +121,15 @@ def paste_dialog(session: Session) -> Callable[[], None]:
 
     async def read(event: events.UploadEventArguments) -> None:
         try:
-            pasted.set_value((await event.file.read()).decode("utf-8-sig"))
-        except UnicodeDecodeError:
-            verdict.set_text(f"{event.file.name} is not text; accepted: CSV in UTF-8")
+            pasted.set_value(text_of_list(await event.file.read()))
+        except InputError as error:
+            verdict.set_text(f"{event.file.name} {said(error)}")
 
     with card:
         take = ends(dialog, "Take", taken)
         file_picker(csv, read, ".csv,.txt,.tsv", verdict.set_text, LARGEST)
-    pasted.on_value_change(throttled(judge))
+    for field in (pasted, *fields.values()):
+        field.on_value_change(throttled(judge))
 
     def opened() -> None:
         pasted.set_value("")
@@ -116,7 +139,35 @@ def paste_dialog(session: Session) -> Callable[[], None]:
     return opened
 
 
-def _verdict(rows: Sequence[SheetRow]) -> str:
+def _meant(fields: Fields) -> tuple[Given, Meaning]:
+    """What the user says of the rows.
+
+    Raises:
+        InputError: what stands in a field of text is not what belongs there; `where` is the field.
+    """
+    columns: dict[str, str] = {}
+    for each in str(fields["columns",].value or "").split(","):
+        known, equals, name = (part.strip() for part in each.partition("="))
+        if each.strip() and (known not in KNOWN or not equals or not name):
+            accepted = f"NAME=COLUMN with commas between them; names: {', '.join(KNOWN)}"
+            raise InputError(f"{each.strip()!r} names no column", where="columns", accepted=accepted)
+        if each.strip():
+            columns[known] = name
+    depth = number(fields["depth_mm",].value)
+    if depth != "" and (not isinstance(depth, float) or not 0 < depth <= MOST_DEPTH):
+        raise InputError(f"{depth!r} is not a depth", where="depth_mm", accepted="a number above 0 [mm], or nothing")
+    given = Given(columns, fields["unit",].value, fields["decimal",].value, header=False)
+    return given, Meaning(fields["normals",].value, fields["point",].value, depth or None)
+
+
+def _understood(text: str, job: Job, given: Given, meaning: Meaning) -> HoleList:
+    """The rows as holes of the job."""
+    taken = {hole.id for hole in job.holes}
+    listed = read_hole_list(text, given, meaning, most=MOST_PASTED, taken=taken)
+    return in_base_frame(listed, reference_of(job), job.tool, job.T_base_part)
+
+
+def _verdict(rows: Sequence[ListedHole]) -> str:
     bad = sum(row.problem is not None for row in rows)
     if not rows:
         return ""
@@ -125,7 +176,7 @@ def _verdict(rows: Sequence[SheetRow]) -> str:
     return f"{len(rows) - bad} good, {bad} not; only the good ones are taken"
 
 
-def _table(rows: Sequence[SheetRow]) -> str:
+def _table(rows: Sequence[ListedHole]) -> str:
     """The rows as they were understood; those that are not good come first."""
     if not rows:
         return ""
@@ -136,12 +187,15 @@ def _table(rows: Sequence[SheetRow]) -> str:
     return f'<table class="zr-sheet"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}'
 
 
-def _row(row: SheetRow) -> str:
-    cells = "".join(f"<td>{escape(cell)}</td>" for cell in row.cells)
-    if row.problem is None:
+def _row(row: ListedHole) -> str:
+    if row.form is not None:
+        numbers = (*row.form.target_mm, *row.form.direction, row.form.depth_mm or 0.0)
+        cells = "".join(f"<td>{escape(each)}</td>" for each in (row.form.id, *(f"{value:.10g}" for value in numbers)))
         return f'<tr><td>{row.line} <b class="zr-good" title="good">✓</b></td>{cells}</tr>'
-    where = f"{row.problem.where.lstrip(', ')}: " if row.problem.where else ""
-    words = escape(f"{where}{said(row.problem)}")
+    assert row.problem is not None
+    cells = "".join(f"<td>{escape(cell)}</td>" for cell in row.cells)
+    where = row.problem.where.removeprefix(f"line {row.line}").lstrip(", ")
+    words = escape(f"{where}: {said(row.problem)}" if where else said(row.problem))
     return (
         f'<tr><td>{row.line} <b class="zr-bad" title="not good">✕</b></td>{cells}</tr>'
         f'<tr class="zr-row-problem"><td></td><td colspan="{len(COLUMNS)}" class="zr-problem">{words}</td></tr>'

@@ -1,0 +1,57 @@
+"""Holes that are pasted: the numbers are shown as understood, and what can be two things is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("nicegui")
+
+from oracles.places import ROOT
+from zerorev.errors import InputError
+from zerorev.files.hole_meaning import AS_IN_A_JOB, Meaning
+from zerorev.files.table_layout import Given
+from zerorev.web.opening import demo
+from zerorev.web.views import paste_form
+
+PRACTICE = ROOT / "tests/data/practice"
+PASTED = Given(header=False)
+
+
+def understood(text, given=PASTED, meaning=AS_IN_A_JOB):
+    return paste_form._understood(text, demo().job, given, meaning)
+
+
+def test_numbers_stand_as_they_are_understood():
+    listed = understood((PRACTICE / "c05_csv_semicolon/semi.csv").read_text(encoding="utf-8"))
+    table = paste_form._table(listed.rows)
+    assert "<td>0.5</td>" in table
+    assert "<td>12.5</td>" in table
+    assert "0,5" not in table
+    assert paste_form._verdict(listed.rows) == "2 rows, all good"
+
+
+def test_thousands_are_not_decimals():
+    text = (PRACTICE / "c06_thousands/paste.tsv").read_text(encoding="utf-8")
+    with pytest.raises(InputError, match=r"'1,200' and '0\.5' \(line 1\) have two decimal signs"):
+        understood(text)
+    with pytest.raises(InputError, match=r"'1,200' may be 1\.200 or 1200"):
+        understood(text.replace("0.5", "5").replace("950.5", "950"))
+
+
+def test_other_columns_are_left_out_and_capitals_are_read():
+    for name in ("extra", "hdrcase"):
+        listed = understood((PRACTICE / f"c07_columns/{name}.csv").read_text(encoding="utf-8"))
+        assert [row.form.id for row in listed.rows] == ["H1"]
+        assert listed.notes == (() if name == "hdrcase" else ("column left out, since it is not needed: dia_mm",))
+
+
+def test_normals_and_points_of_cad_are_shown_as_a_job_has_them():
+    text = (PRACTICE / "c08_normals/out.csv").read_text(encoding="utf-8")
+    table = paste_form._table(understood(text, meaning=Meaning("out", "entry")).rows)
+    assert "<td>H1</td><td>12</td><td>0</td><td>0</td><td>1</td><td>0</td><td>0</td><td>12</td>" in table
+
+
+def test_a_bad_row_says_why_beside_its_cells():
+    table = paste_form._table(understood("A\t1\t2\t3\t1\t0\t0\t9\nB\tx\t2\t3\t1\t0\t0\t9").rows)
+    assert "<td>x</td>" in table
+    assert "column x_mm: &#x27;x&#x27; is not a finite number; accepted: a finite number, e.g. 12.5" in table
