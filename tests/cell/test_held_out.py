@@ -30,7 +30,7 @@ HELD = ("tool_lever",)
 
 
 def planned_holes(robot, count, seed):
-    """Strokes of 20 mm along the axes of the base, where a motion without a reversal exists and the constant spin goes, too."""
+    """Strokes of 20 mm along the axes of the base, with a motion without a reversal and one at constant spin."""
     rng = np.random.default_rng(seed)
     axes = [sense * np.eye(3)[k] for k in range(3) for sense in (1, -1)]
     found, tried = [], 0
