@@ -38,6 +38,11 @@ def test_the_corner_is_rounded_by_half_its_radius(published_plan):
     assert blunt.standoff.min() == pytest.approx(4e-3, abs=3e-5)
 
 
+def test_a_feed_so_small_that_no_memory_would_hold_it_is_refused(published_plan):
+    with pytest.raises(InputError, match=r"takes 10,\d{3} s at this feed.*a greater feed: at most 300 s"):
+        reference_of(published_plan, feed=1e-5)
+
+
 def test_a_feed_that_is_programmed_is_reached_and_another_may_be_asked_for(published_plan):
     slow = reference_of(published_plan, feed=0.02, corner=1e-3)
     assert slow.slowed == 1.0

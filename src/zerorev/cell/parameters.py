@@ -9,7 +9,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import qmc
 
 from zerorev.cell.reference import Manner
 from zerorev.errors import InputError
@@ -98,6 +97,8 @@ def drawn(
     for name in (*vary, *held, *ranges):
         if name not in RANGES:
             raise InputError(f"unknown parameter '{name}'", where="cell", accepted=", ".join(RANGES))
+    from scipy.stats import qmc  # heavy
+
     names = [name for name in ranges if name not in held and (name not in HELD or name in vary)]
     shares = qmc.LatinHypercube(d=len(names), rng=np.random.default_rng(seed)).random(count)
     values = {name: ranges[name].at(shares[:, k]) for k, name in enumerate(names)}

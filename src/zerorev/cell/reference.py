@@ -35,6 +35,7 @@ LEVERS = (0.3, 0.55, 0.8)  # shares of the way to the tip at which a unit mass i
 DIFFERENCE = 1e-4  # [rad] by which the weights are moved to see how their torques change
 MOST_SLOWINGS = 12
 FITS = 1.002
+LONGEST = 300.0  # [s] of a motion: of more nodes than that there is no room for
 
 
 @dataclass(frozen=True)
@@ -235,7 +236,7 @@ def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> F
         manner: of the controller.
 
     Raises:
-        InputError: the robot has no dynamics; the track leaves the reach of the branch.
+        InputError: the robot has no dynamics; the track leaves the reach of the branch, or takes too long.
     """
     masses = dynamics_of(drilling.robot)
     drives = nominal_drives(masses.payload)
@@ -254,6 +255,13 @@ def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> F
 
 
 def _at_feed(drilling: Drilling, branch: int, track: Track, manner: Manner, slowed: float) -> Followed:
+    lasts = float((np.abs(np.diff(track.points[:, 0])) / track.feed).sum())
+    if lasts > LONGEST:
+        raise InputError(
+            f"the motion takes {lasts:,.0f} s at this feed",
+            where=f"hole {drilling.hole.id}",
+            accepted=f"a greater feed: at most {LONGEST:g} s are simulated",
+        )
     standoff, psi = _over_time(track, manner).T
     q = np.empty((standoff.size, 6))
     angles_along(

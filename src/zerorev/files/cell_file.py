@@ -18,9 +18,10 @@ from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document, yaml_text
 from zerorev.model.ranges import RANGES, Basis, Cell, Conditioning, Law, Range
 
-__all__ = ["CellFile", "cell_text", "read_cell", "write_cell"]
+__all__ = ["CellFile", "cell_from_text", "cell_text", "read_cell", "write_cell"]
 
 FORMAT: Literal["zerorev.cell/1"] = "zerorev.cell/1"
+ACCEPTED = "a cell file (YAML)"
 BEYOND = 100  # times the prior, both ways: farther off no arm is, and no number overflows
 
 
@@ -100,7 +101,20 @@ def read_cell(path: str | Path) -> Cell:
     Raises:
         InputError: not such a file, or numbers that are not a range.
     """
-    document = yaml_document(read_text(Path(path), "a cell file (YAML)"), str(path))
+    return cell_from_text(read_text(Path(path), ACCEPTED), str(path))
+
+
+def cell_from_text(text: str, name: str) -> Cell:
+    """The cell of the text of a cell file.
+
+    Args:
+        text: of the file.
+        name: that it had, for messages.
+
+    Raises:
+        InputError: not such a text, or numbers that are not a range.
+    """
+    document = yaml_document(text, name)
     form = checked(CellFile, document)
     ranges: dict[str, Range] = {}
     for name, prior in RANGES.items():

@@ -99,6 +99,7 @@ class Work:
         *,
         each: str = "hole",
         said: Said | None = None,
+        gives_way: bool = False,
     ) -> bool:
         """Begin a task, to be called in the event loop; while another is under way, nothing is begun.
 
@@ -109,6 +110,7 @@ class Work:
             take: called in the event loop with the newest results, five times a second at most.
             each: what a result is of.
             said: what the page says when all of it is done; None: nothing.
+            gives_way: whether it is stopped where another hole is selected that has to be planned.
 
         Returns:
             whether it has begun.
@@ -122,7 +124,7 @@ class Work:
             with suppress(RuntimeError):  # the loop is closed: the app has ended
                 loop.call_soon_threadsafe(news.set)
 
-        begun = Progress(title, 0, total, each)
+        begun = Progress(title, 0, total, each, gives_way=gives_way)
         self.session.change(replace(self.session.state, progress=begun, trouble=None, outcome=None))
         self._task = task = _Task(run, report)
         self._tasks.add(task)
@@ -186,9 +188,9 @@ class Work:
 
 
 def plan_selected(work: Work) -> None:
-    """Plan the selected hole, instead of another single hole that is under way."""
+    """Plan the selected hole, instead of another single hole that is under way, and of what gives way."""
     progress = work.session.state.progress
-    if progress is not None and progress.total == 1:
+    if progress is not None and (progress.total == 1 or progress.gives_way):
         work.cancel()
     hole = work.session.state.hole
     plan(work, () if hole is None else (hole,))

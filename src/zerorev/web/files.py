@@ -7,12 +7,14 @@ from dataclasses import fields
 from typing import Any
 
 from zerorev.errors import InputError
+from zerorev.files.cell_file import cell_from_text
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json
 from zerorev.files.text import json_text
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
+from zerorev.model.ranges import Cell
 
-__all__ = ["cut", "is_plan", "job_written", "parsed", "pieces", "plan_written", "read", "whole"]
+__all__ = ["cut", "is_plan", "job_written", "parsed", "pieces", "plan_written", "read", "read_cell", "whole"]
 
 HOLES = 200  # of a piece
 BYTES = 2**20  # of a piece
@@ -65,14 +67,25 @@ def read(given: Iterator[Any]) -> Iterator[Any]:
     Raises:
         InputError: neither, or one that cannot be used.
     """
-    name, content = next(given), b"".join(given)
+    name = next(given)
+    return pieces(parsed(_text(given, name, "a job file (YAML) or a plan file (JSON)"), name))
+
+
+def read_cell(given: Iterator[Any]) -> Iterator[Cell]:
+    """From a file's name and its content in bytes to what it says of an arm.
+
+    Raises:
+        InputError: not a cell file, or one that cannot be used.
+    """
+    name = next(given)
+    yield cell_from_text(_text(given, name, "a cell file (YAML)"), name)
+
+
+def _text(given: Iterator[bytes], name: str, accepted: str) -> str:
     try:
-        text = content.decode("utf-8-sig")
+        return b"".join(given).decode("utf-8-sig")
     except UnicodeDecodeError:
-        accepted = "a job file (YAML) or a plan file (JSON), in UTF-8"
-        raise InputError("is not text", where=name, accepted=accepted) from None
-    del content
-    return pieces(parsed(text, name))
+        raise InputError("is not text", where=name, accepted=f"{accepted}, in UTF-8") from None
 
 
 def plan_written(given: Iterator[Any]) -> Iterator[bytes]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from nicegui import background_tasks, ui
 
@@ -22,6 +23,7 @@ from zerorev.web.views.header import header
 from zerorev.web.views.holes import holes
 from zerorev.web.views.map_panel import map_panel
 from zerorev.web.views.messages import messages
+from zerorev.web.views.real_arm import real_arm
 from zerorev.web.views.summary import summary
 from zerorev.web.views.twist_map import twist_map
 
@@ -109,6 +111,7 @@ def _workbench(session: Session, work: Work) -> None:
         pictures = [(_panel(name, title), view) for name, title, view in PICTURES]
         with ui.element("section").classes("zr-panel zr-holes").props('aria-label="holes, and a map around them"'):
             _tabs(session, work)
+    pictures.append((_panel("arm", "On a real arm"), partial(real_arm, work=work)))
     background_tasks.create(_fill(session, pictures))
 
 

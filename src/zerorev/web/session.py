@@ -52,7 +52,7 @@ class Session:
 
         Args:
             what: `seek` (path distance from the corner [mm], negative on the plunge), `pick_cell` (number of a cell of
-                the map).
+                the map), `steer` (the motion under a drag, or None).
             listener: is given what they tell.
         """
         self._listeners.append((what, listener))
@@ -144,7 +144,7 @@ def undone(state: State, before: State) -> State:
     now, old = state.job, before.job
     if now is None or old is None or now.robot is not old.robot or now.tool is not old.tool:
         return before
-    before = replace(before, cells=state.cells)
+    before = replace(before, cells=state.cells, arm=state.arm)
     if state.strokes != before.strokes or now.settings is not old.settings:
         return before
     since = (

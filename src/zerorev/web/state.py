@@ -17,6 +17,7 @@ from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
+from zerorev.web.real_arm import RealArm
 
 if TYPE_CHECKING:
     from zerorev.report.scene.map_slice import MapSlice
@@ -54,13 +55,17 @@ class Steered:
 
 @dataclass(frozen=True)
 class Progress:
-    """Long work under way: what the page calls it, and how many things of how many are finished, in how long [s]."""
+    """Long work under way: what the page calls it, how many things of how many are finished, in how long [s].
+
+    Work that gives way is stopped where another hole is selected that has to be planned.
+    """
 
     title: str
     done: int
     total: int
     each: str = "hole"
     seconds: float = 0.0
+    gives_way: bool = False
 
     @property
     def rate(self) -> float | None:
@@ -89,6 +94,7 @@ class State:
         lacking: what the plan that was opened says of holes that it does not have, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
+        arm: what is known of the real arm, and was simulated with it.
     """
 
     job: Job | None = None
@@ -102,6 +108,7 @@ class State:
     lacking: Finding | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
+    arm: RealArm = field(default_factory=RealArm)
 
     @cached_property
     def hole(self) -> Hole | None:

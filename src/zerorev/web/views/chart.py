@@ -12,13 +12,15 @@ from nicegui.element import Element
 from zerorev.model._arrays import Array
 from zerorev.report.scene.palette import DASHES
 
-__all__ = ["INK", "LINE", "MUTED", "SURFACE", "Chart", "axis", "dashes", "pairs", "tip"]
+__all__ = ["INK", "LINE", "MUTED", "SURFACE", "Chart", "axis", "dashes", "pairs", "small_place", "small_title", "tip"]
 
 ECHARTS = Path(nicegui.__file__).parent / "elements" / "echart" / "dist"
 
 # drawn as SVG, so that the colours follow the theme of the page without being drawn again
 INK, MUTED, LINE, SURFACE = (f"var(--zr-{name})" for name in ("ink", "muted", "line", "surface"))
 TEXT = {"color": MUTED, "fontSize": 11, "fontFamily": "inherit"}
+LEFT, ACROSS, TOP, DOWN = (6.0, 39.5, 73.0), 26.0, (11.0, 59.0), 28.0  # [%] of six small pictures in one chart
+HEADING = 9.0  # [%] of each
 
 
 class Chart(
@@ -118,3 +120,29 @@ def pairs(x: Array, y: Array, digits: int) -> list[list[float | None]]:
     """
     known = np.round(np.column_stack([x, y]), digits).tolist()
     return [[across, up if np.isfinite(up) else None] for across, up in known]
+
+
+def small_place(i: int) -> dict[str, Any]:
+    """Where the picture of one joint (0..5) of six stands in its chart."""
+    column, row = i % 3, i // 3
+    return {"left": f"{LEFT[column]}%", "width": f"{ACROSS}%", "top": f"{TOP[row]}%", "height": f"{DOWN}%"}
+
+
+def small_title(i: int, name: str, unit: str, more: str = "") -> dict[str, Any]:
+    """What stands above the picture of one joint.
+
+    Args:
+        i: 0..5.
+        name: of the joint; empty: nothing is drawn.
+        unit: of what is drawn.
+        more: that is said.
+    """
+    rich = {
+        "n": {"color": INK, "fontWeight": 600, "fontSize": 12},
+        "u": {"color": MUTED, "padding": [0, 8, 0, 4]},
+        "c": {"color": INK},
+    }
+    plain = name.translate({ord(letter): None for letter in "{}|"})  # which would be the chart's own
+    text = f"{{n|{plain}}}{{u|[{unit}]}}" + (f"{{c|{more}}}" if more else "") if name else ""
+    place = {"left": f"{LEFT[i % 3]}%", "top": f"{TOP[i // 3] - HEADING}%", "padding": 0}
+    return {"text": text, **place, "textStyle": {"fontSize": 11, "fontWeight": "normal", "rich": rich}}

@@ -15,13 +15,11 @@ from zerorev.report.scene.palette import JOINT_COLOURS
 from zerorev.web.session import Session
 from zerorev.web.state import State, shown
 from zerorev.web.throttle import throttled
-from zerorev.web.views.chart import INK, MUTED, Chart, axis, pairs, tip
+from zerorev.web.views.chart import INK, MUTED, Chart, axis, pairs, small_place, small_title, tip
 
 __all__ = ["curves", "options"]
 
 SAMPLES = 120
-LEFT, ACROSS, TOP, DOWN = (6.0, 39.5, 73.0), 26.0, (11.0, 59.0), 28.0  # [%] of the six small pictures
-HEADING = 9.0  # [%] of each
 KEYS = (
     ("zr-key-line", "as shown"),
     ("zr-key-baseline", "constant spin"),
@@ -86,8 +84,6 @@ def options(found: Curves | None, here: Look | None, constant: Look | None) -> d
 
 def _one(i: int, found: Curves | None, here: Look | None, constant: Look | None) -> dict[str, list[Any]]:
     """One joint (0..5)."""
-    column, row = i % 3, i // 3
-    place = {"left": f"{LEFT[column]}%", "width": f"{ACROSS}%", "top": f"{TOP[row]}%", "height": f"{DOWN}%"}
     on = {"xAxisIndex": i, "yAxisIndex": i, "type": "line", "silent": True, "showSymbol": False}
     shape = {"symbol": "none", "label": {"show": False}, "data": []}
     x, planned, baseline = (np.empty(0),) * 3
@@ -107,8 +103,8 @@ def _one(i: int, found: Curves | None, here: Look | None, constant: Look | None)
                  "lineStyle": {"color": MUTED, "type": "dotted", "width": 1}, "data": [{"xAxis": 0}]}  # fmt: skip
     beyond = {"silent": True, "itemStyle": {"color": "url(#zr-hatch)"}, "data": limits}
     return {
-        "grid": [place],
-        "title": [_title(i, name, _counts(i, here, constant))],
+        "grid": [small_place(i)],
+        "title": [small_title(i, name, "deg", _counts(i, here, constant))],
         "xAxis": [axis(gridIndex=i, **across)],
         "yAxis": [axis(gridIndex=i, min=round(low, 3), max=round(high, 3), splitNumber=3)],
         "series": [
@@ -123,17 +119,6 @@ def _one(i: int, found: Curves | None, here: Look | None, constant: Look | None)
              "markLine": shape | {"animation": False, "lineStyle": {"color": INK, "type": "solid", "width": 1}}},
         ],
     }  # fmt: skip
-
-
-def _title(i: int, name: str, counts: str) -> dict[str, Any]:
-    rich = {
-        "n": {"color": INK, "fontWeight": 600, "fontSize": 12},
-        "u": {"color": MUTED, "padding": [0, 8, 0, 4]},
-        "c": {"color": INK},
-    }
-    text = f"{{n|{_plain(name)}}}{{u|[deg]}}{{c|{counts}}}" if name else ""
-    place = {"left": f"{LEFT[i % 3]}%", "top": f"{TOP[i // 3] - HEADING}%", "padding": 0}
-    return {"text": text, **place, "textStyle": {"fontSize": 11, "fontWeight": "normal", "rich": rich}}
 
 
 CROSS = "path://M1 0 L5 4 L9 0 L10 1 L6 5 L10 9 L9 10 L5 6 L1 10 L0 9 L4 5 L0 1 Z"
@@ -154,8 +139,3 @@ def _counts(i: int, here: Look | None, constant: Look | None) -> str:
     before, after = ("?" if each is None or each.score is None else str(each.score.reversals_per_joint[i])
                      for each in (constant, here))  # fmt: skip
     return "" if here is None else f"{before} → {after}"
-
-
-def _plain(name: str) -> str:
-    """A name that the chart's own markup leaves alone."""
-    return name.translate({ord(letter): None for letter in "{}|"})

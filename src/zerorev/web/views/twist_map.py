@@ -224,6 +224,7 @@ class _TwistMap:
 
     def show_motion(self, seq: int | None, *, fit: bool = False) -> None:
         state, motion = self.session.state, self.motion
+        self.session.tell("steer", motion)
         if state.job is None or state.hole is None or motion is None:
             self.element.run_method("show_motion", {**_empty(state), "seq": seq, "fit": fit})
             return
