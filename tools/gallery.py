@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
 
+    from zerorev.cell.ensemble import HoleStudy
+
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs/reference/gallery.md", ROOT / "docs/img/gallery"
 COLOURS = 128  # of a picture: some 50 kB
@@ -49,6 +51,7 @@ print("drawn:", plan.holes[0].hole.id)
 """
 GROUPS = {
     "A hole of a plan": ("joint_angles", "twist_plane", "critical_rates"),
+    "A study of possible arms": ("tip_deviation", "drive_torques", "study_gains", "drilled_holes"),
     "Where a part or a tool should stand": ("placement_map", "tool_offset"),
     "A workspace map": ("map_planes", "map_surface", "map_views", "map_cell", "map_rose", "map_difference"),
     "The method of the thesis": ("parameter_slices", "zero_volume", "comparison_boxes"),
@@ -74,6 +77,19 @@ def _job(name: str) -> zr.Job:
 @cache
 def _plan() -> zr.Plan:
     return zr.plan_job(_job("thesis_positions"))
+
+
+@cache
+def _study() -> tuple[HoleStudy, ...]:
+    """The positions of the thesis on 60 possible arms, at 20 mm/s."""
+    from zerorev.cell.ensemble import HoleStudy, study
+    from zerorev.cell.possible import finished, possible_arms
+    from zerorev.cell.reference import Manner
+    from zerorev.model.ranges import Cell
+
+    arms = finished(possible_arms(_plan(), Cell(), 60, 0))
+    found = study(_plan(), arms.sets, manner=Manner(feed=0.02), motions=())
+    return tuple(each for each in found if isinstance(each, HoleStudy))
 
 
 def _tool_offset() -> Figure:
@@ -148,6 +164,10 @@ DRAWN: dict[str, Callable[[], Figure]] = {
     "joint_angles": lambda: figures.joint_angles(_plan(), "position_1"),
     "twist_plane": lambda: figures.twist_plane(_plan(), "position_2"),
     "critical_rates": lambda: figures.critical_rates(_plan(), "position_1"),
+    "tip_deviation": lambda: figures.tip_deviation(_study()[0]),
+    "drive_torques": lambda: figures.drive_torques(_study()[0], _plan().robot.joint_names),
+    "study_gains": lambda: figures.study_gains(_study()),
+    "drilled_holes": lambda: figures.drilled_holes(_study()),
     "placement_map": _placement,
     "tool_offset": _tool_offset,
     "map_planes": lambda: figures.map_planes(_map()),

@@ -17,6 +17,7 @@ from zerorev.report.figures.offset import tool_offset
 from zerorev.report.figures.placement import placement_map
 from zerorev.report.figures.plane import twist_plane
 from zerorev.report.figures.rates import critical_rates
+from zerorev.report.figures.study import drilled_holes, drive_torques, study_gains, tip_deviation
 from zerorev.report.figures.workspace import map_cell, map_planes, map_rose, map_surface, map_views
 from zerorev.thesis.figures.comparison import comparison_boxes
 from zerorev.thesis.figures.parameter_map import parameter_slices, zero_volume
@@ -24,6 +25,8 @@ from zerorev.thesis.figures.parameter_map import parameter_slices, zero_volume
 __all__ = [
     "comparison_boxes",
     "critical_rates",
+    "drilled_holes",
+    "drive_torques",
     "joint_angles",
     "map_cell",
     "map_difference",
@@ -33,6 +36,8 @@ __all__ = [
     "map_views",
     "parameter_slices",
     "placement_map",
+    "study_gains",
+    "tip_deviation",
     "tool_offset",
     "twist_plane",
     "zero_volume",

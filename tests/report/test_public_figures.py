@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 import zerorev as zr
 from oracles.made_map import made_map
+from oracles.made_study import made_study
 from zerorev import figures
 from zerorev.errors import InputError
 from zerorev.model.job import Job
@@ -51,10 +52,12 @@ def answers(published, robot, tool, positions):
     outcome = Outcome(np.zeros(3), 4, 0.01, 0, 100, 7)
     runs = tuple(Rescored("position 1", "swarm", seed, outcome, 0.01, 0, 1.7, 0.2) for seed in range(3))
     compared = Comparison(job, job.holes, {"swarm": METHODS["swarm"]}, (0, 1, 2), 100, runs=runs)
-    hole = positions[0].hole
+    hole, studied = positions[0].hole, made_study("position 1")
     return {
         "comparison_boxes": (compared,),
         "critical_rates": (published, "position 2"),
+        "drilled_holes": ((studied,),),
+        "drive_torques": (studied, robot.joint_names),
         "joint_angles": (published, "position 2"),
         "map_cell": (workspace,),
         "map_difference": (workspace, workspace.assign(deepest_mm=workspace["deepest_mm"] + 3.0)),
@@ -64,6 +67,8 @@ def answers(published, robot, tool, positions):
         "map_views": (workspace,),
         "parameter_slices": ({"after extents": parameter_map(robot, tool, hole, size=6, psi_target=[0.0])},),
         "placement_map": (job, placed),
+        "study_gains": ((studied,),),
+        "tip_deviation": (studied,),
         "tool_offset": (job, curve, least),
         "twist_plane": (published, "position 2"),
         "zero_volume": (parameter_map(robot, tool, hole, size=6),),
@@ -91,7 +96,7 @@ def test_the_names_are_these_and_all_are_documented(answers):
 
 
 def test_figures_of_one_axes_are_these():
-    assert set(AMONG_OTHERS) == {"critical_rates", "map_rose", "tool_offset", "twist_plane", *IN_3D}
+    assert set(AMONG_OTHERS) == {"critical_rates", "map_rose", "study_gains", "tool_offset", "twist_plane", *IN_3D}
 
 
 @pytest.mark.parametrize("name", AMONG_OTHERS)

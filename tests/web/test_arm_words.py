@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 pytest.importorskip("nicegui")
 
+from oracles.made_study import made_study
 from oracles.published import POSITIONS
-from zerorev.cell.ensemble import HoleStudy, band
+from zerorev.cell.ensemble import band
 from zerorev.cell.parameters import nominal
 from zerorev.cell.possible import Arms
 from zerorev.model.job import Job
@@ -31,13 +31,7 @@ def state(robot, tool):
 @pytest.fixture
 def found(state):
     """Made up, of 4 of 6 arms, with 100 N of thrust."""
-    numbers = np.random.default_rng(0)
-    sizes = dict.fromkeys(("deviation", "vertical", "offset", "ovality"), (2, 2, 4))
-    sizes |= {"swing": (2, 6, 4), "position": (2, 4), "tilt": (2, 4)}
-    sizes |= {"profile": (2, 2, 3, 5), "torque": (2, 6, 3, 5)}
-    drawn = {name: 1e-4 * numbers.uniform(0.5, 2.0, size) for name, size in sizes.items()}
-    path, speed = np.linspace(-1, 1, 5), np.array([0.2, 0.1])
-    study = HoleStudy("position 1", ("baseline", "plan"), **drawn, path=path, speed=speed)
+    study = made_study("position 1")
     arms = Arms((nominal(),) * 6, 8, 2)
     return Simulated(state.hole, MOTION, state.job.settings, state.arm.cell, Asked(8, 5, 0.2, 100.0), arms, study)
 

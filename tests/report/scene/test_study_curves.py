@@ -5,22 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from zerorev.cell.ensemble import HoleStudy
+from oracles.made_study import made_study
 from zerorev.report.scene.study_curves import Banded, stray_curve, torque_curve
 
 
-@pytest.fixture
-def hole():
-    """Made up, of 2 motions and 4 sets."""
-    numbers = np.random.default_rng(0)
-    sizes = dict.fromkeys(("deviation", "vertical", "offset", "ovality"), (2, 2, 4))
-    sizes |= {"swing": (2, 6, 4), "position": (2, 4), "tilt": (2, 4)}
-    sizes |= {"profile": (2, 2, 3, 5), "torque": (2, 6, 3, 5), "speed": (2,)}
-    figures = {name: numbers.normal(size=size) for name, size in sizes.items()}
-    return HoleStudy("h", ("baseline", "plan"), **figures, path=np.linspace(-1, 1, 5))
-
-
-def test_they_are_those_of_the_study(hole):
+def test_they_are_those_of_the_study():
+    hole = made_study("h")
     stray, torque = stray_curve(hole, "plan", "tool"), torque_curve(hole, "baseline", 2)
     np.testing.assert_array_equal([stray.low, stray.median, stray.high], hole.profile[1, 1] * 1e3)
     np.testing.assert_array_equal([torque.low, torque.median, torque.high], hole.torque[0, 2])

@@ -18,14 +18,14 @@ from zerorev.model._arrays import Array
 from zerorev.report.figures import style
 from zerorev.report.scene.study_curves import DRAWN, Banded, stray_curve, torque_curve
 
-__all__ = ["bars", "drilled", "gains", "name_holes", "stray", "torques", "write_figures"]
+__all__ = ["bars", "drilled_holes", "drive_torques", "name_holes", "study_gains", "tip_deviation", "write_figures"]
 
 WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
 COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
 MOST_NAMED = 12  # holes that are named below an axis
 
 
-def stray(hole: HoleStudy) -> Figure:
+def tip_deviation(hole: HoleStudy) -> Figure:
     """Distance of the tip from its mean path [mm] over the path, of plan and constant spin: median and 5 to 95 %.
 
     Args:
@@ -48,7 +48,7 @@ def stray(hole: HoleStudy) -> Figure:
     return figure
 
 
-def torques(hole: HoleStudy, names: Sequence[str]) -> Figure:
+def drive_torques(hole: HoleStudy, names: Sequence[str]) -> Figure:
     """Torques of the drives [N m] over the path, of plan and constant spin: median and 5 to 95 %; six axes.
 
     Args:
@@ -86,7 +86,7 @@ def _handles() -> list[Line2D]:
     return [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=WORDS[motion]) for motion in DRAWN]
 
 
-def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
+def study_gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
     """What the plan gains at each hole [%], by the encoders and at the tool: median and 5 to 95 %.
 
     Args:
@@ -116,7 +116,7 @@ def gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
     return figure
 
 
-def drilled(studied: Sequence[HoleStudy]) -> Figure:
+def drilled_holes(studied: Sequence[HoleStudy]) -> Figure:
     """Position, tilt and ovality of the holes that a free tip leaves, of plan and constant spin: median and 5 to 95 %.
 
     Args:
@@ -178,11 +178,11 @@ def write_figures(studied: Sequence[HoleStudy], names: Sequence[str], folder: Pa
     """
     make_folder(folder)
     files = [folder / "gains.png", folder / "holes.png"]
-    write_bytes(files[0], style.png(gains(studied)))
-    write_bytes(files[1], style.png(drilled(studied)))
+    write_bytes(files[0], style.png(study_gains(studied)))
+    write_bytes(files[1], style.png(drilled_holes(studied)))
     for number, hole in enumerate(studied, start=1):
         stem = re.sub(r"[^A-Za-z0-9.-]+", "_", hole.id).strip("._")[:40]
-        for name, figure in (("stray", stray(hole)), ("torques", torques(hole, names))):
+        for name, figure in (("stray", tip_deviation(hole)), ("torques", drive_torques(hole, names))):
             files.append(folder / f"{name}_{number:03d}_{stem}.png")
             write_bytes(files[-1], style.png(figure))
     return files
