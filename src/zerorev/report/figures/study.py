@@ -16,11 +16,11 @@ from zerorev.cell.ensemble import ENDS, SIDES, HoleStudy, band
 from zerorev.files.output import make_folder, write_bytes
 from zerorev.model._arrays import Array
 from zerorev.report.figures import style
-from zerorev.report.scene.study_curves import DRAWN, Banded, stray_curve, torque_curve
+from zerorev.report.scene.study_curves import DRAWN, SIDE_WORDS, Banded, stray_curve, torque_curve
+from zerorev.report.words.study import NAMES
 
 __all__ = ["bars", "drilled_holes", "drive_torques", "name_holes", "study_gains", "tip_deviation", "write_figures"]
 
-WORDS = {"baseline": "constant spin", "plan": "plan", "encoder": "by the encoders", "tool": "at the tool"}
 COLOURS = {"baseline": style.BASELINE_COLOUR, "plan": style.JOINT_COLOURS[0]}
 MOST_NAMED = 12  # holes that are named below an axis
 
@@ -38,7 +38,7 @@ def tip_deviation(hole: HoleStudy) -> Figure:
     axes.append(figure.add_subplot(grid[0, 1], sharey=axes[0]))
     for k, (ax, side) in enumerate(zip(axes, SIDES, strict=True)):
         style.bare_axes(ax)
-        ax.set_title(WORDS[side], size=9.5, color=style.INK, loc="left")
+        ax.set_title(SIDE_WORDS[side], size=9.5, color=style.INK, loc="left")
         style.label(ax, "path, from the start over the turn to the end", "deviation [mm]" if k == 0 else "")
         ax.axvspan(-0.5, 0.5, color="#f4f4f4", zorder=0, linewidth=0)
         for motion in DRAWN:
@@ -83,7 +83,7 @@ def _draw(ax: Axes, curve: Banded, colour: str) -> None:
 
 
 def _handles() -> list[Line2D]:
-    return [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=WORDS[motion]) for motion in DRAWN]
+    return [Line2D([], [], color=COLOURS[motion], linewidth=2.0, label=NAMES[motion]) for motion in DRAWN]
 
 
 def study_gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figure:
@@ -109,7 +109,7 @@ def study_gains(studied: Sequence[HoleStudy], *, ax: Axes | None = None) -> Figu
     axes.set_ylim(max(axes.get_ylim()[0], -120), 105)
     name_holes(axes, [hole.id for hole in studied])
     handles = [
-        Line2D([], [], color=colours[k], marker="os"[k], linestyle="none", label=WORDS[side])
+        Line2D([], [], color=colours[k], marker="os"[k], linestyle="none", label=SIDE_WORDS[side])
         for k, side in enumerate(SIDES)
     ]
     style.legend_below(figure, handles, 2, ax)
@@ -144,7 +144,7 @@ def drilled_holes(studied: Sequence[HoleStudy]) -> Figure:
         axes.set_ylim(bottom=0)
         name_holes(axes, [hole.id for hole in studied])
     handles = [
-        Line2D([], [], color=COLOURS[motion], marker="os"[k], linestyle="none", label=WORDS[motion])
+        Line2D([], [], color=COLOURS[motion], marker="os"[k], linestyle="none", label=NAMES[motion])
         for k, motion in enumerate(DRAWN)
     ]
     style.legend_below(figure, handles, 2)

@@ -10,10 +10,11 @@ from zerorev.cell.ensemble import SIDES, HoleStudy
 from zerorev.cell.motions import MotionName
 from zerorev.model._arrays import Array
 
-__all__ = ["DRAWN", "Banded", "stray_curve", "torque_curve"]
+__all__ = ["DRAWN", "SIDE_WORDS", "Banded", "stray_curve", "torque_curve"]
 
 DRAWN: tuple[MotionName, ...] = ("baseline", "plan")
 """The motions that are drawn, the one that is compared with first."""
+SIDE_WORDS = {"encoder": "by the encoders", "tool": "at the tool"}
 
 
 @dataclass(frozen=True)

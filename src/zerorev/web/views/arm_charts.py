@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from zerorev.cell.ensemble import SIDES
-from zerorev.report.scene.study_curves import DRAWN, Banded, stray_curve, torque_curve
+from zerorev.report.scene.study_curves import DRAWN, SIDE_WORDS, Banded, stray_curve, torque_curve
+from zerorev.report.words.study import NAMES
 from zerorev.web.real_arm import Simulated
 from zerorev.web.views.chart import INK, MUTED, SURFACE, axis, pairs, small_place, small_title, tip
 
-__all__ = ["COLOURS", "MOTIONS", "SIDE_WORDS", "stray_options", "torque_options"]
+__all__ = ["MOTIONS", "stray_options", "torque_options"]
 
 COLOURS = {"baseline": MUTED, "plan": "var(--zr-accent)"}
-MOTIONS = {"baseline": "constant spin", "plan": "this motion"}
-SIDE_WORDS = {"encoder": "by the encoders", "tool": "at the tool"}
+MOTIONS = {"baseline": NAMES["baseline"], "plan": "this motion"}
 LEFT, ACROSS, ABOVE, BELOW = (7.0, 57.0), 41.0, 32, 46  # [%], [px] of the two pictures of the tip
 EVERY = 2  # of the points of a torque
 HIGHEST = 4.0  # times the greatest median: a band that is higher leaves the picture, so that the curves stay readable

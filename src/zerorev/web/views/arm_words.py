@@ -8,12 +8,12 @@ import numpy as np
 
 from zerorev.cell.ensemble import SIDES, Band, band
 from zerorev.model.units import DEG, MM
-from zerorev.report.scene.study_curves import DRAWN
+from zerorev.report.scene.study_curves import DRAWN, SIDE_WORDS
 from zerorev.report.words.lost_motion import WHERE_IT_HOLDS
 from zerorev.report.words.study import kept_words, rests_on, thrust_words
 from zerorev.web.real_arm import Simulated, outdated
 from zerorev.web.state import State, shown
-from zerorev.web.views.arm_charts import MOTIONS, SIDE_WORDS
+from zerorev.web.views.arm_charts import MOTIONS
 
 __all__ = ["figures", "notes", "stands"]
 
