@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
 
 from nicegui import ui
@@ -50,9 +50,21 @@ def ranges_table(cell: Cell, tool: Tool) -> str:
     """
     stated = held_for(tool, cell)
     rows = sorted(cell.ranges.items(), key=lambda each: (each[0] in (*HELD, *stated), each[1].basis == "prior"))
-    body = "".join(_row(name, each, stated) for name, each in rows)
+    body = "".join(_row(name, each, stated) for name, each in _of_all_joints(dict(rows)))
     heads = "".join(f"<th>{head}</th>" for head in HEADS)
     return f'<table class="zr-sheet"><thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>'
+
+
+def _of_all_joints(ranges: Mapping[str, Range]) -> Iterator[tuple[str, Range]]:
+    """The ranges by their names; those of the six joints as one, where they are the same."""
+    for name, each in ranges.items():
+        stem, joint = name[:-1], name[-1]
+        six = [f"{stem}{number}" for number in range(1, 7)]
+        alike = joint.isdigit() and all(ranges[other] == each for other in six)
+        if not alike:
+            yield name, each
+        elif joint == "1":
+            yield f"{six[0]} to {six[-1]}", each
 
 
 def _row(name: str, each: Range, stated: tuple[str, ...]) -> str:
@@ -62,5 +74,6 @@ def _row(name: str, each: Range, stated: tuple[str, ...]) -> str:
         ends, rests = (f"{each.nominal:g}", f"{each.nominal:g}"), "held here"
     else:
         ends, rests = (f"{each.low:.4g}", f"{each.high:.4g}"), BASES[each.basis]
-    cells = (name, each.means, *ends, rests, each.source)
+    source = "" if each.source == BASES["prior"] else each.source  # as it rests on, or not drawn from at all
+    cells = (name, each.means, *ends, rests, source)
     return f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in cells)}</tr>"

@@ -49,7 +49,7 @@ def real_arm(session: Session, work: Work) -> None:
         missing.props('data-testid="arm-missing"')
         return
     ui.html(KEYS, sanitize=False).classes("zr-curve-keys").props('aria-hidden="true"')
-    with ui.element("div").classes("zr-arm-parts"):
+    with ui.element("div").classes("zr-arm-parts zr-arm-empty") as parts:
         with ui.element("div").classes("zr-arm-left"):
             form = ask(session, work)
             with ui.element("div").classes("zr-arm-figures"):
@@ -58,10 +58,10 @@ def real_arm(session: Session, work: Work) -> None:
         stray = Chart("how far the tip strays along the path, in this motion and at constant spin", "arm-stray")
         torques = Chart("torques of the six drives along the path, in this motion and at constant spin", "arm-torques")
         words = ui.html(sanitize=False).classes("zr-arm-notes").props('data-testid="arm-notes"')
-    _shown(session, table, (stray.classes("zr-arm-stray"), torques.classes("zr-arm-torque")), words)
+    _shown(session, parts, table, (stray.classes("zr-arm-stray"), torques.classes("zr-arm-torque")), words)
 
 
-def _shown(session: Session, table: ui.html, charts: tuple[Chart, Chart], words: ui.html) -> None:
+def _shown(session: Session, parts: ui.element, table: ui.html, charts: tuple[Chart, Chart], words: ui.html) -> None:
     """Keep the figures and curves of the hole's last simulation up to date, and whether they still hold."""
     stray, torques = charts
     drawn: list[Simulated | None] = []
@@ -76,6 +76,7 @@ def _shown(session: Session, table: ui.html, charts: tuple[Chart, Chart], words:
         words.set_content(notes(found, state))
         for chart in charts:
             chart.classes(add="zr-arm-old" if old else "", remove="" if old else "zr-arm-old")
+        parts.classes(add="zr-arm-empty" if found is None else "", remove="" if found is None else "zr-arm-empty")
         if not drawn or drawn[0] is not found:
             drawn[:] = [found]
             stray.show(stray_options(found))
