@@ -53,5 +53,5 @@ def test_normals_and_points_of_cad_are_shown_as_a_job_has_them():
 
 def test_a_bad_row_says_why_beside_its_cells():
     table = paste_form._table(understood("A\t1\t2\t3\t1\t0\t0\t9\nB\tx\t2\t3\t1\t0\t0\t9").rows)
-    assert "<td>x</td>" in table
+    assert ">B · x · 2 · 3 · 1 · 0 · 0 · 9</td>" in table
     assert "column x_mm: &#x27;x&#x27; is not a finite number; accepted: a finite number, e.g. 12.5" in table

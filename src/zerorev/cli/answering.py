@@ -14,6 +14,7 @@ from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.planning.job import answers, unanswered
+from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown
 from zerorev.workers import Machines
@@ -41,19 +42,21 @@ def run(
         KeyboardInterrupt: the user stopped it; says what is kept.
         ZerorevError: as `answers` has it.
     """
-    for said in job.notes:
-        terminal.note(said)
+    for note in job.notes:
+        terminal.note(note)
     head = unanswered(job, strokes)
-    shown, kept = Shown(head), list[HolePlan]()
+    shown, kept, tried = Shown(head), list[HolePlan](), TriedOtherwise(job)
     with nullcontext() if output is None else Part(output, head, job.holes) as part:
         keep = figures is not None or (json and output is None)
         fresh = part is not None and part.done == 0
-        _answer(job, strokes, machines, part, (shown.add, kept.append) if keep else (shown.add,))
+        _answer(job, strokes, machines, part, (shown.add, tried.add, *((kept.append,) if keep else ())))
+        said = tried.findings()
         if part is not None:
-            part.finish()
+            part.finish(said)
     if output is not None and fresh:  # what was kept from another run was not checked by this one
         remember(read_text(output, "the plan file that was just written"))
-    whole = replace(head, holes=tuple(kept))
+    shown.say(said)
+    whole = replace(head, holes=tuple(kept), findings=(*head.findings, *said))
     if figures is not None:
         _draw(whole, figures)
     if json and output is not None:

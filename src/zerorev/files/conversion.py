@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.schema import DynamicsForm, FrameForm, HoleForm, RobotForm, SettingsForm, ToolForm
+from zerorev.files.schema import DynamicsForm, FrameForm, GivenToolForm, HoleForm, RobotForm, SettingsForm, ToolForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
@@ -37,6 +37,8 @@ __all__ = [
     "tool_from",
 ]
 
+# from a tool frame with X along the plunge to one with Z against it: a turn by -90 deg about Y
+X_DRILLS = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 NOMINAL_DEPTH_MM = 1.0  # of a hole whose depth is to be found
 
 
@@ -121,7 +123,10 @@ def tool_from(form: ToolForm, **sources: Any) -> Tool:
     """
     with inside(f"tool {form.name}"):
         load = _load_from(form)
-    return Tool(form.name, transform(rotation_rpy(*rad(form.rpy_deg)), m(form.tcp_mm)), **sources, load=load)
+    R = rotation_rpy(*rad(form.rpy_deg))
+    if isinstance(form, GivenToolForm) and form.tool_x == "drill":
+        R = R @ X_DRILLS
+    return Tool(form.name, transform(R, m(form.tcp_mm)), **sources, load=load)
 
 
 def _load_from(form: ToolForm) -> Load | None:

@@ -6,7 +6,6 @@ A file becomes plain data (`text`), a checked form (`schema`, `validation`) and 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,8 @@ from zerorev.errors import InputError
 from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
 from zerorev.files.hole_list import all_of, given_of, in_base_frame, read_hole_list, text_of_list
 from zerorev.files.hole_meaning import as_in_a_job, meaning_of
+from zerorev.files.named import named_document, shipped
+from zerorev.files.other_kinds import refuse_another_kind, refuse_map_folder
 from zerorev.files.output import write_text
 from zerorev.files.part import part_document
 from zerorev.files.plan_conversion import plan_from
@@ -49,12 +50,12 @@ __all__ = [
 
 def robot_names() -> list[str]:
     """Names of the robots that ship with zerorev."""
-    return _shipped("robots")
+    return shipped("robots")
 
 
 def tool_names() -> list[str]:
     """Names of the tools that ship with zerorev."""
-    return _shipped("tools")
+    return shipped("tools")
 
 
 def read_robot(name_or_path: str | Path, folder: str | Path | None = ".") -> Robot:
@@ -67,7 +68,7 @@ def read_robot(name_or_path: str | Path, folder: str | Path | None = ".") -> Rob
     Raises:
         InputError: an unknown name, no such file, or a file that is not a robot.
     """
-    document = _named_document(name_or_path, folder, "robots")
+    document = named_document(name_or_path, folder, "robots")
     form = checked(RobotFile, document)
     with inside(document.file):
         return robot_from(
@@ -88,7 +89,7 @@ def read_tool(name_or_path: str | Path, folder: str | Path | None = ".") -> Tool
     Raises:
         InputError: an unknown name, no such file, or a file that is not a tool.
     """
-    document = _named_document(name_or_path, folder, "tools")
+    document = named_document(name_or_path, folder, "tools")
     form = checked(ToolFile, document)
     with inside(document.file):
         return tool_from(form, sources=form.sources)
@@ -106,6 +107,7 @@ def read_job(path: str | Path, *, depth_needed: bool = True, options: Mapping[st
         InputError: anything in the options, the file, its CSV, its robot or its tool that cannot be used.
     """
     path = Path(path)
+    refuse_map_folder(path)
     document = yaml_document(read_text(path, "a job file (YAML)"), str(path))
     if options and isinstance(document.data, dict):
         checked(SettingsForm, Document("options", dict(options)))
@@ -213,6 +215,7 @@ def write_schemas(folder: str | Path) -> None:
 
 def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bool = True) -> Job:
     """The job of a document; paths in it start in the folder, or are refused where there is none."""
+    refuse_another_kind(document.data, document.file)
     form = checked(JobFile, document)
     with inside(document.where(("robot",))):
         robot = read_robot(form.robot, folder)
@@ -276,23 +279,3 @@ def _table(
         listed = read_hole_list(text, given_of(form), meaning_of(form), depth_needed=depth_needed)
         rows = all_of(in_base_frame(listed, form.psi_reference, tool, T_base_part))
     return {row.hole.id: row.hole for row in rows if row.hole is not None}, listed.notes
-
-
-def _shipped(kind: str) -> list[str]:
-    folder = resources.files("zerorev.files") / kind
-    return sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml"))
-
-
-def _named_document(name_or_path: str | Path, folder: str | Path | None, kind: str) -> Document:
-    """A shipped file by its name, or a file by its path."""
-    name, shipped, what = str(name_or_path), _shipped(kind), kind.removesuffix("s")
-    if name in shipped:
-        resource = resources.files("zerorev.files") / kind / f"{name}.yaml"
-        return yaml_document(resource.read_text(encoding="utf-8"), f"{name}.yaml")
-    if folder is None:
-        raise InputError(f"'{name}' does not ship with zerorev", accepted=", ".join(shipped))
-    if "/" in name or "\\" in name or name.endswith((".yaml", ".yml", ".json")):
-        path = Path(folder) / name
-        return yaml_document(read_text(path, f"a {what} file (YAML)"), str(path))
-    accepted = f"{', '.join(shipped)}, or the path of a {what} file ending in .yaml"
-    raise InputError(f"unknown {what} '{name}'", accepted=accepted)

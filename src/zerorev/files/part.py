@@ -24,9 +24,11 @@ from zerorev.files.output import as_output_error, check_file, write_pieces
 from zerorev.files.plan_conversion import answer_from
 from zerorev.files.plan_data import answer_data, asked_data, plan_head
 from zerorev.files.plan_schema import DepthHole, PlanHole
+from zerorev.files.stated_forms import data_of
 from zerorev.files.text import Document, json_pieces
 from zerorev.files.units import plain
 from zerorev.files.validation import checked
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Plan
 
@@ -121,14 +123,17 @@ class Part:
             form: PlanHole | DepthHole = checked(self._form, Document(where, entry))
             yield answer_from(form, where)
 
-    def finish(self) -> None:
+    def finish(self, said: Sequence[Finding] = ()) -> None:
         """Write the file that it becomes, whole or not at all, and remove the part.
+
+        Args:
+            said: findings of the whole plan that are known only at its end.
 
         Raises:
             OutputError: it cannot be written.
         """
         head = dict(self._head)
-        findings = head.pop("findings")
+        findings = [*head.pop("findings"), *map(data_of, said)]
         write_pieces(self._target, json_pieces(head | {"holes": self._entries(), "findings": findings}))
         self.done = 0
 

@@ -6,10 +6,20 @@ Schemas (docs/schemas) both show it.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, Discriminator, Field, Tag, WithJsonSchema
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    WithJsonSchema,
+    model_validator,
+)
 
+from zerorev.files.kuka_frames import KEYS, in_own_keys
 from zerorev.files.stated_forms import Form, Many, Words, keys_of, kind
 from zerorev.model.settings import Settings
 from zerorev.visible import one_line
@@ -23,6 +33,8 @@ __all__ = [
     "DynamicsForm",
     "Form",
     "FrameForm",
+    "GivenFrameForm",
+    "GivenToolForm",
     "HoleForm",
     "JobFile",
     "Length",
@@ -82,6 +94,13 @@ INERTIA = "six numbers [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass
 SOURCES = "a mapping of text to text: where the numbers come from"
 
 
+def _with_keys_of_kuka(schema: dict[str, Any]) -> None:
+    """The published form of a frame has the keys that are read in place of its own, too."""
+    three = {"items": {"type": "number"}, "maxItems": 3, "minItems": 3, "type": "array"}
+    for key, means in KEYS.items():
+        schema["properties"][key] = {"description": means} | (three if key == "abc_deg" else {"type": "number"})
+
+
 class FrameForm(Form):
     """A frame in the base frame."""
 
@@ -89,6 +108,17 @@ class FrameForm(Form):
     rpy_deg: AnglesDeg = Field(
         default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
     )
+
+
+class GivenFrameForm(FrameForm):
+    """A frame in the base frame, as a user gives it: also as KUKA's controllers have it."""
+
+    model_config = ConfigDict(json_schema_extra=_with_keys_of_kuka)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _own_keys(cls, data: Any) -> Any:
+        return in_own_keys(data, "xyz_mm")
 
 
 class GeometryForm(Form):
@@ -184,7 +214,27 @@ class ToolForm(Form):
     )
 
 
-class ToolFile(ToolForm):
+class GivenToolForm(ToolForm):
+    """The numbers of a tool as a user gives them: also as KUKA's controllers have them."""
+
+    model_config = ConfigDict(json_schema_extra=_with_keys_of_kuka)
+
+    tool_x: Literal["drill"] | None = Field(
+        default=None,
+        description="drill: X of the tool points along the drill, as TOOL_DATA of a KUKA has it; left out, Z points "
+        "against the plunge",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _own_keys(cls, data: Any) -> Any:
+        changed = in_own_keys(data, "tcp_mm")
+        if changed is not data and "abc_deg" not in data:
+            changed.setdefault("tool_x", "left out")  # which axis of KUKA's frame drills has to be said
+        return changed
+
+
+class ToolFile(GivenToolForm):
     """A tool file, YAML."""
 
     format: Literal["zerorev.tool/1"] = Field(description="zerorev.tool/1")
@@ -255,11 +305,12 @@ class JobFile(SettingsForm):
     format: Literal["zerorev.job/1"] = Field(default="zerorev.job/1", description="zerorev.job/1")
     name: Name | None = Field(default=None, description="text: names the program; left out, it is the file's name")
     robot: Name = Field(description="text: a name that ships with zerorev, or the path of a robot file")
-    tool: Annotated[Annotated[Name, Tag("<text>")] | Annotated[ToolForm, Tag("<mapping>")], Discriminator(kind)] = (
-        Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
-    )
-    part_frame: FrameForm = Field(
-        default=FrameForm(), description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame"
+    tool: Annotated[
+        Annotated[Name, Tag("<text>")] | Annotated[GivenToolForm, Tag("<mapping>")], Discriminator(kind)
+    ] = Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
+    part_frame: GivenFrameForm = Field(
+        default=GivenFrameForm(),
+        description="a mapping of xyz_mm and rpy_deg, or of KUKA's x, y, z, a, b, c: the part frame in the base frame",
     )
     psi_reference: Annotated[
         Annotated[Literal["base_y", "nearest_base", "part_x", "part_y"], Tag("<text>")]

@@ -21,6 +21,7 @@ from zerorev.model._arrays import Array, rotation_rpy, transform
 
 __all__ = ["Description", "Joint", "Visual", "read_urdf"]
 
+XACRO = "wiki/xacro}"  # of the tags of its own
 MOST_BYTES = 20 * 2**20
 MOST_PARTS = 1_000  # joints, links, materials, and what is seen of links, of each
 LONGEST_NAME = 1_000  # of a mesh
@@ -141,6 +142,9 @@ def _xml(path: Path) -> Any:
         raise InputError(message, where=str(path), accepted="plain XML") from None
     except (ParseError, ValueError, LookupError) as error:  # LookupError: an encoding that nobody knows
         raise InputError(f"is not XML: {error}", where=str(path), accepted="a URDF file") from None
+    if any(XACRO in str(entry.tag) or any("${" in value for value in entry.attrib.values()) for entry in root.iter()):
+        accepted = f"a URDF file: expand it first (xacro {path.name} > {path.stem}.urdf)"
+        raise InputError("is xacro, which is not expanded here", where=str(path), accepted=accepted)
     if root.tag != "robot":
         raise InputError(
             f"begins with <{root.tag}>", where=str(path), accepted="<robot>: a URDF file, not xacro or SDF"

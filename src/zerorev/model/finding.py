@@ -13,6 +13,7 @@ __all__ = ["Finding", "FindingKind", "Level"]
 Level = Literal["error", "warning", "info"]
 
 FindingKind = Literal[
+    "base_column",
     "blend",
     "blend_clipped",
     "certificate",
@@ -21,6 +22,8 @@ FindingKind = Literal[
     "corner_not_deepened",
     "deepest",
     "depth",
+    "duplicate",
+    "frame_angles",
     "incomplete",
     "joint_speed",
     "joints",
@@ -31,6 +34,7 @@ FindingKind = Literal[
     "lost_motion",
     "no_stroke",
     "no_torque",
+    "normals",
     "printable",
     "rejected",
     "resampled",
@@ -43,10 +47,12 @@ FindingKind = Literal[
     "threshold",
     "tip_difference",
     "tolerance",
+    "tool_direction",
     "tool_turn",
     "turn_speed",
     "unchecked_moves",
     "unfinished",
+    "units",
     "unreachable",
     "verification",
     "wrist_offset",

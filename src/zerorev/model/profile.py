@@ -39,7 +39,8 @@ class Profile:
             raise InputError(
                 "the stand-off does not fall to the target and rise again",
                 where="profile, standoff",
-                accepted="strictly falling values, the target, strictly rising values, e.g. 50, 0, 50",
+                accepted="strictly falling values, the target, strictly rising values, e.g. 50, 0, 50; pecking, in and "
+                "out of a hole in steps, is not planned",
             )
 
     @classmethod

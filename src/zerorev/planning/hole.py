@@ -24,6 +24,7 @@ from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
 from zerorev.planning.load_findings import load_findings
+from zerorev.planning.out_of_reach import shift_into_reach
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
 from zerorev.search.deepest import Deepest
@@ -305,7 +306,12 @@ def _why_infeasible(drilling: Drilling, settings: Settings) -> tuple[Finding, ..
             return (Finding("error", "lead_in", message, drilling.hole.id),)
         return (Finding("error", "limit", message, drilling.hole.id),)
     where = ", ".join(f"{value:.1f}" for value in drilling.hole.target * 1e3)
-    message = f"out of reach: no branch and spin brings the tool along the axis at ({where}) mm"
+    message = f"no branch and spin brings the tool along the axis at ({where}) mm"
+    shift = shift_into_reach(drilling)
+    if shift is None:
+        return (Finding("error", "unreachable", f"out of reach: {message}", drilling.hole.id),)
+    way = ", ".join(f"{value:.0f}" for value in (shift * 1e3).round() + 0.0)
+    message = f"out of reach by {np.linalg.norm(shift) * 1e3:.0f} mm: {message}; moved by ({way}) mm it is within reach"
     return (Finding("error", "unreachable", message, drilling.hole.id),)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
+from dataclasses import replace
 
 from zerorev.files.part import Part
 from zerorev.model.hole import Hole
@@ -11,6 +12,8 @@ from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.planning.hole import lever_findings, plan, plan_deepest
+from zerorev.planning.likely_mistakes import likely_mistakes
+from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.workers import HERE, Machines, Workers, interrupts_held_back
 
 __all__ = ["answers", "plan_job", "unanswered"]
@@ -40,18 +43,21 @@ def plan_job(
         ZerorevError: a worker ended before its time, or the cluster is lost.
     """
     found: list[HolePlan] = []
+    tried = TriedOtherwise(job)
     if progress:
         progress(0, len(job.holes))
     for answer in answers(job, strokes=strokes, machines=Machines(workers, scheduler)):
         found.append(answer)
+        tried.add(answer)
         if progress:
             progress(len(found), len(job.holes))
-    return unanswered(job, strokes, tuple(found))
+    whole = unanswered(job, strokes, tuple(found))
+    return replace(whole, findings=(*whole.findings, *tried.findings()))
 
 
 def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> Plan:
     """The plan of a job but for its holes, or with these."""
-    findings = lever_findings(job.robot, job.tool)
+    findings = (*lever_findings(job.robot, job.tool), *likely_mistakes(job))
     return Plan(job.robot, job.tool, job.settings, holes, job.T_base_part, job.name, findings, strokes)
 
 

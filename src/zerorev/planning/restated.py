@@ -27,6 +27,7 @@ from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.hole import lever_findings, motion_findings, plan, plan_deepest
+from zerorev.planning.likely_mistakes import GUESSES
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import subject, verify_hole
 from zerorev.verify.digits import moved_figures
@@ -80,7 +81,7 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
         workers: processes to run it on; None: one per core where it is worth it. The outcome is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
     """
-    said = _but(stated.findings, "unfinished"), lever_findings(stated.robot, stated.tool)
+    said = _but(stated.findings, "unfinished", *GUESSES), lever_findings(stated.robot, stated.tool)
     wrong = [_error(message, None) for message in findings_differ(*said)]
     holes: list[HolePlan] = []
     if progress:

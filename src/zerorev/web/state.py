@@ -17,6 +17,7 @@ from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
+from zerorev.planning.likely_mistakes import likely_mistakes
 from zerorev.web.real_arm import RealArm
 
 if TYPE_CHECKING:
@@ -130,7 +131,8 @@ class State:
 
 def opened_job(job: Job) -> State:
     """A job of which nothing is planned yet, its first hole selected."""
-    return State(job, selected=job.holes[0].id, outcome="; ".join(job.notes) or None)
+    said = (*job.notes, *(f"{finding.level}: {finding.message}" for finding in likely_mistakes(job)))
+    return State(job, selected=job.holes[0].id, outcome="; ".join(said) or None)
 
 
 def opened_plan(plan: Plan) -> State:

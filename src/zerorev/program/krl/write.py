@@ -6,6 +6,7 @@ act over a lever of a metre or more and have more; a REAL of the controller hold
 
 from __future__ import annotations
 
+import re
 from importlib.metadata import version as installed_version
 
 import numpy as np
@@ -86,14 +87,15 @@ def to_krl(
 
 
 def refuse_other_makers(manufacturer: str, robot: str) -> None:
-    """Let only a KUKA pass.
+    """Let only a KUKA pass: a maker that begins with KUKA as a word.
 
     Raises:
         NotExportableError: another maker's robot.
     """
-    if manufacturer.strip().upper() != "KUKA":
+    if re.match(r"\s*kuka(\s|,|$)", manufacturer, re.IGNORECASE) is None:
         by = f"by {manufacturer}" if manufacturer.strip() else "of a maker that its file does not name"
-        raise NotExportableError((f"the robot {robot} is {by}, and KRL runs on KUKA controllers alone",))
+        why = f"the robot {robot} is {by}, and KRL runs on KUKA controllers alone (manufacturer: KUKA in its file)"
+        raise NotExportableError((why,))
 
 
 def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list[str]:

@@ -66,6 +66,10 @@ class Shown:
         if answer.score is not None:
             self._reversals[answer.score.reversals] += 1
 
+    def say(self, findings: Iterable[Finding]) -> None:
+        """Take findings of the whole plan that are known only at its end."""
+        self._findings += findings
+
     def _values(self, answer: HolePlan) -> Iterator[tuple[str, float]]:
         if answer.score is not None:
             yield "travel [deg]", float(np.rad2deg(answer.score.travel))

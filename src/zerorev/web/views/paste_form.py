@@ -193,7 +193,7 @@ def _row(row: ListedHole) -> str:
         cells = "".join(f"<td>{escape(each)}</td>" for each in (row.form.id, *(f"{value:.10g}" for value in numbers)))
         return f'<tr><td>{row.line} <b class="zr-good" title="good">✓</b></td>{cells}</tr>'
     assert row.problem is not None
-    cells = "".join(f"<td>{escape(cell)}</td>" for cell in row.cells)
+    cells = f'<td colspan="{len(COLUMNS)}">{escape(" · ".join(row.cells))}</td>'
     where = row.problem.where.removeprefix(f"line {row.line}").lstrip(", ")
     words = escape(f"{where}: {said(row.problem)}" if where else said(row.problem))
     return (

@@ -1,0 +1,150 @@
+"""What users probably got wrong is said at the command line, with the cure; inputs of tests/data/practice."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import pytest
+
+from oracles.places import ROOT
+from zerorev import cli
+from zerorev.cli import main
+
+PRACTICE = ROOT / "tests/data/practice"
+
+
+def warnings(capsys, job, code=cli.FINE):
+    assert main(["plan", str(job), "--proof-boxes", "0", "--json"]) == code
+    plan = json.loads(capsys.readouterr().out)
+    return [f"{each['kind']}: {each['message']}" for each in plan["findings"] if each["level"] == "warning"], plan
+
+
+def refused(capsys, *command):
+    assert main([*map(str, command)]) == cli.BAD_INPUT
+    said = capsys.readouterr()
+    assert said.out == ""
+    return said.err
+
+
+@pytest.mark.parametrize(
+    ("case", "code", "kinds"),
+    [
+        ("c09_tool_back/tool_back.yaml", cli.FINE, {"tool_direction"}),
+        ("c10_units/job_metres.yaml", cli.FINE, {"units"}),
+        ("c10_units/job_opw_m.yaml", cli.FOUND, {"units"}),
+        ("c10_units/job_good.yaml", cli.FINE, set()),
+        ("c20_duplicates/dup.yaml", cli.FINE, {"duplicate"}),
+        ("c20_duplicates/duppos.yaml", cli.FINE, {"duplicate"}),
+        ("c23_feed/ms.yaml", cli.FINE, {"units"}),
+        ("c08_normals/okdir.yaml", cli.FINE, set()),
+        ("c11_maker/job_kr4.yaml", cli.FINE, set()),
+    ],
+)
+def test_a_warning_of_its_kind_and_of_no_other(capsys, case, code, kinds):
+    found, _ = warnings(capsys, PRACTICE / case, code)
+    assert {each.partition(":")[0] for each in found} == kinds, found
+
+
+def test_reversed_normals_are_tried_turned_round(capsys, tmp_path):
+    target = tmp_path / "plan.json"
+    assert (
+        main(["plan", str(PRACTICE / "c08_normals/reversed.yaml"), "--proof-boxes", "0", "-o", str(target)])
+        == cli.FOUND
+    )
+    shown = capsys.readouterr().out
+    assert "with the directions turned round 3 of 3 are drilled without a reversal" in shown
+    written = [each["message"] for each in json.loads(target.read_text())["findings"] if each["kind"] == "normals"]
+    assert any("turned round 3 of 3" in each for each in written)
+    assert not target.with_name("plan.json.part").exists()
+
+
+def test_the_cure_stands_in_the_message(capsys):
+    found, _ = warnings(capsys, PRACTICE / "c09_tool_back/tool_back.yaml")
+    assert "rpy_deg [0, -90, 0]?" in found[0]
+    found, _ = warnings(capsys, PRACTICE / "c10_units/job_opw_m.yaml", cli.FOUND)
+    assert any("are they in metres? geometry_mm takes millimetres" in each for each in found)
+    assert any("joint limits" in each and "in radians?" in each for each in found)
+
+
+def test_a_maker_as_data_sheets_write_it_is_exported(capsys, tmp_path):
+    plan = tmp_path / "plan.json"
+    assert main(["plan", str(PRACTICE / "c11_maker/job_kr4.yaml"), "--proof-boxes", "0", "-o", str(plan)]) == cli.FINE
+    assert main(["export", str(plan), "--controller", "krl", "-o", str(tmp_path / "p.src")]) == cli.FINE
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [
+        ("KR 6 R700-2", "kuka_kr6_r700_2"),
+        ("KR 120 R2700-2", "kuka_kr120_r2700_2"),
+        ("KUKA KR6 R700-2", "kuka_kr6_r700_2"),
+        ("GP8", "yaskawa_gp8"),
+        ("kuka_kr6_r700", "kuka_kr6_r700_2"),
+        ("IRB 4600-60/2.05", None),  # a path
+    ],
+)
+def test_a_robot_by_its_name_on_the_data_sheet(capsys, tmp_path, written, meant):
+    text = (PRACTICE / "c23_feed/ms.yaml").read_text(encoding="utf-8")
+    (tmp_path / "job.yaml").write_text(text.replace("kuka_kr6_r700_2", written))
+    said = refused(capsys, "plan", tmp_path / "job.yaml")
+    assert (f"did you mean '{meant}'?" in said) if meant else ("no such file" in said)
+
+
+def test_another_kind_of_file_as_a_job(capsys, tmp_path):
+    plan = tmp_path / "plan.json"
+    assert main(["plan", str(PRACTICE / "c23_feed/ms.yaml"), "--proof-boxes", "0", "-o", str(plan)]) == cli.FINE
+    capsys.readouterr()
+    for command in ("plan", "depth", "place"):
+        assert "is a plan, not a job" in refused(capsys, command, plan)
+    assert "is a map file, not a job" in refused(capsys, "plan", ROOT / "examples/maps/table5_plane.yaml")
+    assert "is a robot file, not a job" in refused(capsys, "plan", PRACTICE / "c10_units/good.yaml")
+    (tmp_path / "map.zarr").mkdir()
+    (tmp_path / "map.zarr/zarr.json").write_text("{}")
+    assert "is a workspace map, not a job" in refused(capsys, "plan", tmp_path / "map.zarr")
+
+
+def test_a_robot_description_as_a_robot(capsys, tmp_path):
+    for name in ("kr6.urdf", "kr6.xacro"):
+        shutil.copy(PRACTICE / "c12_urdf/kr6_support" / name, tmp_path / name)
+        text = (PRACTICE / "c23_feed/ms.yaml").read_text(encoding="utf-8")
+        (tmp_path / "job.yaml").write_text(text.replace("kuka_kr6_r700_2", name))
+        said = refused(capsys, "plan", tmp_path / "job.yaml")
+        assert "is a robot description (URDF), from which no robot is read" in said
+
+
+def test_xacro_says_how_to_expand_it():
+    from zerorev.errors import InputError
+    from zerorev.files.urdf import read_urdf
+
+    with pytest.raises(InputError, match=r"is xacro.*expand it first \(xacro kr6\.xacro > kr6\.urdf\)"):
+        read_urdf(PRACTICE / "c12_urdf/kr6_support/kr6.xacro")
+
+
+def test_pecking_is_not_planned_and_said_so(capsys):
+    said = refused(capsys, "plan", PRACTICE / "c19_peck/peck.yaml")
+    assert "pecking, in and out of a hole in steps, is not planned" in said
+
+
+def test_frames_as_kuka_has_them(capsys, tmp_path):
+    """`{x, y, z, a, b, c}` for a frame, and TOOL_DATA as it stands in $config.dat, its X along the drill."""
+    text = (PRACTICE / "c18_abc/abc.yaml").read_text(encoding="utf-8")
+    _, plan = warnings(capsys, PRACTICE / "c18_abc/abc.yaml")
+    assert plan["part_frame"] == {"xyz_mm": [500, 300, 800], "rpy_deg": [0, 0, 5]}
+    assert plan["tool"]["rpy_deg"] == [0, -90, 0]
+    for old, new in (("tool: {tcp_mm: [100, 0, 65], abc_deg: [0, -90, 0]}",
+                      "tool: {X 100.0,Y 0.0,Z 65.0,A 0.0,B 0.0,C 0.0, tool_x: drill}"),
+                     ("part_frame: {x: 500, y: 300, z: 800, a: 5, b: 0, c: 0}",
+                      "part_frame: {X 500.0,Y 300.0,Z 800.0,A 5.0,B 0.0,C 0.0}")):  # fmt: skip
+        assert old in text
+        (tmp_path / "job.yaml").write_text(text.replace(old, new))
+        _, other = warnings(capsys, tmp_path / "job.yaml")
+        assert other["part_frame"] == plan["part_frame"]
+        assert other["tool"]["tcp_mm"] == [100, 0, 65]
+        assert other["tool"]["rpy_deg"] == pytest.approx([0, -90, 0], abs=1e-9)
+    said = refused(capsys, "plan", PRACTICE / "c18_abc/tooldata.yaml")
+    assert "tool_x" in said
+    assert "X of the tool points along the drill" in said
+    (tmp_path / "job.yaml").write_text(text.replace("{x: 500,", "{x: 500, xyz_mm: [1, 2, 3],"))
+    assert "unknown key 'x'" in refused(capsys, "plan", tmp_path / "job.yaml")
