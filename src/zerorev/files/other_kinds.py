@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -39,8 +40,9 @@ def refuse_another_kind(data: Any, file: str) -> None:
         name = "map"
     if name in FOR:
         what, use = FOR[name]
-        accepted = f"format: zerorev.job/1, a job file with robot, tool and holes; {what} is for {use}"
-        raise InputError(f"is {what}, not a job", where=file, accepted=accepted)
+        accepted = f"format: zerorev.job/1: a job file with robot, tool and holes; {what} is for {use}"
+        form = f" (zerorev.{name}/1)" if "format" in data else ""
+        raise InputError(f"is {what}, not a job{form}", where=file, accepted=accepted)
 
 
 def refuse_map_folder(path: Path) -> None:
@@ -52,7 +54,10 @@ def refuse_map_folder(path: Path) -> None:
     Raises:
         InputError: it is such a folder.
     """
-    if (path / "zarr.json").is_file():
+    is_map = False
+    with suppress(OSError, ValueError):  # a path that no system takes is refused where it is opened
+        is_map = (path / "zarr.json").is_file()
+    if is_map:
         accepted = "a job file (YAML); a map is for zerorev map show, map compare and view"
         raise InputError("is a workspace map, not a job", where=str(path), accepted=accepted)
 
