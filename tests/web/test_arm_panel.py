@@ -63,6 +63,7 @@ def test_a_motion_is_simulated_and_says_when_it_is_out_of_date(demo_page, tmp_pa
     expect(page.get_by_test_id("arm-figures")).to_contain_text("at the tool [mm]", timeout=60_000)
 
 
+@pytest.mark.long
 def test_a_cell_file_is_opened_or_says_what_is_wrong_with_it(demo_page, tmp_path):
     page = demo_page
     upload = page.locator(".zr-arm-file input[type=file]")
@@ -92,6 +93,7 @@ def test_a_cell_file_is_opened_or_says_what_is_wrong_with_it(demo_page, tmp_path
     expect(page.get_by_test_id("arm-file")).to_contain_text("no cell file")
 
 
+@pytest.mark.long
 def test_a_robot_without_masses_says_what_is_missing(serve, open_page, tmp_path):
     hole = {"id": "only", "target_mm": [700, 0, 600], "direction": [1, 0, 0], "depth_mm": 20}
     data = {"robot": "yaskawa_gp8", "tool": {"tcp_mm": [100, 0, 65], "rpy_deg": [0, -90, 0]}, "holes": [hole]}

@@ -91,6 +91,14 @@ def test_a_job_has_all_of_its_parts_and_its_first_hole_is_planned(shown):
     assert planned == 1
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_on_a_real_arm_something_is_simulated_where_its_masses_are_known(shown, known):
+    job = demo().job
+    robot = job.robot if known else replace(job.robot, dynamics=None)
+    _, (*_, parts), _ = shown(opened_job(replace(job, robot=robot)), *[lambda _: None] * 5)
+    assert ("simulate" in parts, "arm-missing" in parts) == (known, not known)
+
+
 def test_the_holes_are_there_before_the_pictures_and_no_form_before_it_is_opened(shown, monkeypatch):
     seen = {}
 
