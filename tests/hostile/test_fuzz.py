@@ -191,10 +191,10 @@ class Reader:
 def check_job(data: bytes, _: Path) -> None:
     job = job_from_text(text_of(data), "fuzz.yaml")
     said = yaml_of(data)
-    frame = said.get("part_frame", {})
+    frame = of_kuka(said.get("part_frame", {}), "xyz_mm")
     assert len(job.holes) == len(said["holes"])
     for hole, its in zip(job.holes, said["holes"], strict=True):
-        same_hole(hole, its, frame)
+        same_hole(hole, as_meant(its, said), frame)
     assert job.robot.name == said["robot"]
     assert job.name == one_line(said.get("name") or "fuzz")
     settings = {key: value for key, value in said.items() if key in settings_data(zr.Settings())}
@@ -202,9 +202,36 @@ def check_job(data: bytes, _: Path) -> None:
         settings["objective"] = {key: value for key, value in settings["objective"].items() if value}
     same(settings_data(job.settings), settings)
     if isinstance(said["tool"], dict):
-        np.testing.assert_allclose(job.tool.T_flange_tcp[:3, 3] * 1e3, said["tool"]["tcp_mm"], rtol=1e-9, atol=1e-9)
-        turn = turned(said["tool"]["rpy_deg"]).as_matrix()
+        tool = of_kuka(said["tool"], "tcp_mm")
+        np.testing.assert_allclose(job.tool.T_flange_tcp[:3, 3] * 1e3, tool["tcp_mm"], rtol=1e-9, atol=1e-9)
+        turn = turned(tool["rpy_deg"])
+        if tool.get("tool_x") == "drill":
+            turn = turn * Rotation.from_euler("y", -90, degrees=True)
+        turn = turn.as_matrix()
         np.testing.assert_allclose(job.tool.T_flange_tcp[:3, :3], turn, atol=1e-9)
+
+
+def of_kuka(frame: dict[str, Any], origin: str) -> dict[str, Any]:
+    """A frame that is given by x, y, z, a, b, c or abc_deg, in the other keys."""
+    lower = {key.lower(): value for key, value in frame.items()}
+    if any(key in lower for key in "xyzabc"):
+        lower.setdefault(origin, [lower.get(key, 0.0) for key in "xyz"])
+        angles = lower["abc_deg"][::-1] if "abc_deg" in lower else [lower.get(key, 0.0) for key in "cba"]
+        lower.setdefault("rpy_deg", angles)
+    elif "abc_deg" in lower:
+        lower["rpy_deg"] = lower["abc_deg"][::-1]
+    return lower
+
+
+def as_meant(hole: dict[str, Any], job: dict[str, Any]) -> dict[str, Any]:
+    """A hole with the bottom of its stroke and its direction into the material, of a job that means something else."""
+    depth = hole.get("depth_mm") if hole.get("depth_mm") is not None else job.get("depth_mm")
+    direction = np.array(hole["direction"], dtype=float) * (-1 if job.get("normals") == "out" else 1)
+    further = job.get("breakthrough_mm", 0) + (depth if job.get("point") == "entry" else 0)
+    scaled = direction / np.abs(direction).max()
+    bottom = np.array(hole["target_mm"], dtype=float) + further * scaled / np.linalg.norm(scaled)
+    depth = None if depth is None else depth + job.get("breakthrough_mm", 0)
+    return hole | {"target_mm": bottom.tolist(), "direction": direction.tolist(), "depth_mm": depth}
 
 
 def check_plan(data: bytes, _: Path) -> None:
@@ -235,9 +262,12 @@ def check_robot(data: bytes, folder: Path) -> None:
 
 def check_tool(data: bytes, folder: Path) -> None:
     (folder / "tool.yaml").write_bytes(data)
-    T, said = read_tool("./tool.yaml", folder).T_flange_tcp, yaml_of(data)
+    T, said = read_tool("./tool.yaml", folder).T_flange_tcp, of_kuka(yaml_of(data), "tcp_mm")
+    turn = turned(said["rpy_deg"]).as_matrix()
+    if said.get("tool_x") == "drill":
+        turn = turn @ Rotation.from_euler("y", -90, degrees=True).as_matrix()
     np.testing.assert_allclose(T[:3, 3] * 1e3, said["tcp_mm"], rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(T[:3, :3], turned(said["rpy_deg"]).as_matrix(), atol=1e-9)
+    np.testing.assert_allclose(T[:3, :3], turn, atol=1e-9)
 
 
 def check_table(data: bytes, folder: Path) -> None:
