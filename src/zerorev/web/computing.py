@@ -18,6 +18,7 @@ from zerorev.errors import ZerorevError
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Strokes
 from zerorev.planning.job import answers
+from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words.outcome import outcome
 from zerorev.web.session import Session
 from zerorev.web.state import Progress, State, answered
@@ -210,7 +211,16 @@ def plan(work: Work, holes: Sequence[Hole], strokes: Strokes = "asked") -> None:
     asked = replace(job, holes=tuple(holes))
     what, done = ("planning", "planned") if strokes == "asked" else ("finding the deepest stroke of", "made deepest")
     ids = [hole.id for hole in holes]
-    _answer(work, what, done, ids, strokes, lambda: answers(asked, strokes=strokes, machines=Machines()))
+    tried, helps = TriedOtherwise(asked), list[str]()
+
+    def found() -> Iterator[HolePlan]:
+        for answer in answers(asked, strokes=strokes, machines=Machines()):
+            tried.add(answer)
+            yield answer
+        if len(holes) > 1:
+            helps.extend(finding.message for finding in tried.findings())
+
+    _answer(work, what, done, ids, strokes, found, helps)
 
 
 def keep(work: Work) -> None:
@@ -241,9 +251,18 @@ def certify(work: Work, holes: Sequence[Hole]) -> None:
 
 
 def _answer(
-    work: Work, what: str, done: str, ids: Sequence[str], strokes: Strokes, run: Callable[[], Iterable[HolePlan]]
+    work: Work,
+    what: str,
+    done: str,
+    ids: Sequence[str],
+    strokes: Strokes,
+    run: Callable[[], Iterable[HolePlan]],
+    helps: Sequence[str] = (),
 ) -> None:
-    """Find answers of holes of the job; each is taken if the page still asks for the same."""
+    """Find answers of holes of the job; each is taken if the page still asks for the same.
+
+    When all are there, what then stands in `helps` is said, too.
+    """
     job = work.session.state.job
     assert job is not None
     asked = {hole.id: hole for hole in job.holes}
@@ -257,7 +276,7 @@ def _answer(
 
     def said(state: State, seconds: float) -> str:
         found = (state.answers[key] for key in ids if key in state.answers)
-        return outcome(done, found, seconds, proven=done == "proven")
+        return "\n".join((outcome(done, found, seconds, proven=done == "proven"), *helps))
 
     which = f"hole {ids[0]}" if len(ids) == 1 else f"{len(ids)} holes"
     work.start(f"{what} {which}", len(ids), run, take, said=said if len(ids) > 1 else None)

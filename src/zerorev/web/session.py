@@ -141,6 +141,7 @@ def undone(state: State, before: State) -> State:
     A motion that was kept by hand is an edit of its own: it takes no other answer's place, and no other takes its.
     """
     before = replace(before, progress=state.progress, trouble=state.trouble, outcome=state.outcome)
+    before = replace(before, caution=state.caution if before.job is state.job else before.caution)
     now, old = state.job, before.job
     if now is None or old is None or now.robot is not old.robot or now.tool is not old.tool:
         return before

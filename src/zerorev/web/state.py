@@ -92,6 +92,7 @@ class State:
         progress: of the long work under way, or None.
         trouble: why the last work came to nothing, in one sentence, or None.
         outcome: what the last work on many holes came to, in one sentence, or None.
+        caution: what is probably wrong with the job, and what was left out where it was read, one per line, or None.
         lacking: what the plan that was opened says of holes that it does not have, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
@@ -106,6 +107,7 @@ class State:
     progress: Progress | None = None
     trouble: str | None = None
     outcome: str | None = None
+    caution: str | None = None
     lacking: Finding | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
@@ -131,8 +133,12 @@ class State:
 
 def opened_job(job: Job) -> State:
     """A job of which nothing is planned yet, its first hole selected."""
-    said = (*job.notes, *(f"{finding.level}: {finding.message}" for finding in likely_mistakes(job)))
-    return State(job, selected=job.holes[0].id, outcome="; ".join(said) or None)
+    return State(job, selected=job.holes[0].id, caution=_caution(job))
+
+
+def _caution(job: Job) -> str | None:
+    """What is probably wrong with a job, and what was left out of its files, one per line; None where nothing is."""
+    return "\n".join((*(finding.message for finding in likely_mistakes(job)), *job.notes)) or None
 
 
 def opened_plan(plan: Plan) -> State:
@@ -243,7 +249,7 @@ def with_holes(state: State, holes: Sequence[Hole]) -> State:
     if state.job is None or not holes:
         raise InputError("there is nothing to add", where="holes", accepted="one hole or more, to a job opened before")
     job = replace(state.job, holes=(*state.job.holes, *holes))
-    return replace(state, job=job, selected=holes[0].id, steered=None)
+    return replace(state, job=job, selected=holes[0].id, steered=None, caution=_caution(job))
 
 
 def without_hole(state: State, hole: str) -> State:
