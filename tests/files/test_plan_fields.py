@@ -25,7 +25,8 @@ def forms_in(annotation: Any) -> Iterator[type[BaseModel]]:
 def schema_leaves(form: type[BaseModel], path: str = "") -> Iterator[tuple[str, tuple[str, ...]]]:
     """Every field that holds no form, by its path, and the descriptions on the way to it."""
     for name, field in form.model_fields.items():
-        there, inner = f"{path}.{name}" if path else name, list(forms_in(field.annotation))
+        key = field.alias or name
+        there, inner = f"{path}.{key}" if path else key, list(forms_in(field.annotation))
         words = (field.description or "",)
         if not inner:
             yield there, words

@@ -21,6 +21,7 @@ from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.files.io import job_from_dict, plan_to_json, read_plan, write_plan
 from zerorev.files.part import Part
 from zerorev.planning import job as jobs
+from zerorev.planning.sequence import sequenced
 from zerorev.workers import Machines
 
 CLI = [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main())"]
@@ -34,7 +35,7 @@ def hole(n):
 
 
 FAR = hole(7) | {"target_mm": [5000, 300, 800]}
-JOB = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "min_rate_deg_per_mm": 0}
+JOB = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "min_rate_deg_per_mm": 0, "posture_freedom": 0}
 HOLES = [hole(0), FAR, hole(1), hole(2), hole(3)]
 
 
@@ -72,10 +73,13 @@ def counted(monkeypatch, plan):
 def whole(part_path, job):
     """The bytes of the plan file that a part becomes."""
     target = Path(str(part_path).removesuffix(".part"))
-    with Part(target, jobs.unanswered(job, "asked"), job.holes) as part:
+    head = jobs.unanswered(job, "asked")
+    with Part(target, head, job.holes) as part:
         for answer in jobs.answers(job, part=part):
             del answer
-        part.finish()
+        found = sequenced(job, part.answers)
+        times = [answer.cycle_time for answer in part.answers()]
+        part.finish(jobs.in_sequence(head, found, times), found.changed)
     return target.read_bytes()
 
 

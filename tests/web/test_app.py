@@ -172,7 +172,7 @@ def test_from_a_drag_that_reverses_joint_4_to_the_program_of_the_command_line(re
 
     ready.get_by_test_id("scope").get_by_text("All holes").click()
     ready.get_by_test_id("plan").click()
-    expect(ready.get_by_test_id("progress")).to_be_hidden(timeout=120_000)
+    expect(ready.get_by_test_id("outcome")).to_be_visible(timeout=120_000)
     _, plan = saved(ready, lambda: from_menu(ready, "download-plan"))
     from_menu(ready, "download-krl")
     expect(ready.get_by_test_id("preflight")).to_be_visible()

@@ -12,12 +12,25 @@ import numpy as np
 import pytest
 
 from zerorev.errors import InputError
+from zerorev.files.io import plan_to_json
 from zerorev.model.job import Job, Settings
 from zerorev.planning.hole import plan, plan_deepest
+from zerorev.planning.job import plan_job
 from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
-from zerorev.web.state import Progress, State, Steered, opened_job, selected, shown, steered, with_hole, with_settings
+from zerorev.web.state import (
+    Progress,
+    State,
+    Steered,
+    opened_job,
+    plan_of,
+    selected,
+    shown,
+    steered,
+    with_hole,
+    with_settings,
+)
 
 PATIENCE = 60.0  # [s]
 
@@ -52,6 +65,20 @@ def test_plans_the_selected_hole_as_the_library_does(job):
     assert state.answer.verified.passed
     assert state.progress is None
     assert state.trouble is None
+
+
+def test_all_holes_are_planned_as_the_sequence_that_the_library_plans(job):
+    async def run():
+        work = Work(Session(opened_job(job)))
+        computing.plan(work, job.holes)
+        await until(lambda: not work.busy)
+        return work.session.state
+
+    state = asyncio.run(run())
+    expected = plan_job(job)
+    assert state.trouble is None
+    assert len({answer.motion.branch for answer in expected.holes}) == 1
+    assert plan_to_json(plan_of(state)) == plan_to_json(expected)
 
 
 def test_deepest_of_all_holes(job):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import closing, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -10,10 +10,12 @@ from pathlib import Path
 from zerorev.files.checked_files import remember
 from zerorev.files.io import plan_to_json
 from zerorev.files.part import Part
+from zerorev.files.plan_conversion import as_written
 from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes
-from zerorev.planning.job import answers, unanswered
+from zerorev.planning.job import answers, in_sequence, unanswered
+from zerorev.planning.sequence import sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown
@@ -45,18 +47,27 @@ def run(
     for note in job.notes:
         terminal.note(note)
     head = unanswered(job, strokes)
-    shown, kept, tried = Shown(head), list[HolePlan](), TriedOtherwise(job)
+    kept, tried = list[HolePlan](), TriedOtherwise(job)
     with nullcontext() if output is None else Part(output, head, job.holes) as part:
-        keep = figures is not None or (json and output is None)
         fresh = part is not None and part.done == 0
-        _answer(job, strokes, machines, part, (shown.add, tried.add, *((kept.append,) if keep else ())))
+        _answer(job, strokes, machines, part, (tried.add, *((kept.append,) if part is None else ())))
         said = tried.findings()
+        source = (lambda: map(as_written, kept)) if part is None else part.answers
+        whole, changed = _in_sequence(job, head, source, machines)
+        shown = Shown(whole)
+        keep = figures is not None or (json and output is None)
+        holes = list[HolePlan]()
+        for n, answer in enumerate(source()):
+            final = changed.get(n, answer)
+            shown.add(final)
+            if keep:
+                holes.append(final)
         if part is not None:
-            part.finish(said)
+            part.finish(whole, changed, said)
     if output is not None and fresh:  # what was kept from another run was not checked by this one
         remember(read_text(output, "the plan file that was just written"))
     shown.say(said)
-    whole = replace(head, holes=tuple(kept), findings=(*head.findings, *said))
+    whole = replace(whole, holes=tuple(holes), findings=(*head.findings, *said))
     if figures is not None:
         _draw(whole, figures)
     if json and output is not None:
@@ -73,6 +84,17 @@ def run(
         if output is None:
             terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
     return shown.sound
+
+
+def _in_sequence(
+    job: Job, head: Plan, answers: Callable[[], Iterable[HolePlan]], machines: Machines
+) -> tuple[Plan, dict[int, HolePlan]]:
+    """The plan with the order of its holes and the moves between them, and the answers that it changes."""
+    with terminal.progress("sequence", len(job.holes)) as progress:
+        found = sequenced(job, answers, choose=head.strokes == "asked", machines=machines, progress=progress)
+    # of the cycle time no more is needed than the holes' own
+    times = [found.changed.get(n, answer).cycle_time for n, answer in enumerate(answers())]
+    return in_sequence(head, found, times), found.changed
 
 
 def _answer(

@@ -47,7 +47,8 @@ def robot_from(form: RobotForm, **sources: Any) -> Robot:
     joints = form.joints
     lengths: dict[str, Any] = {name: float(m(value)) for name, value in form.geometry_mm.model_dump().items()}
     arm = ArmGeometry(**lengths, sign=six(joints.sign), offset=six(rad(joints.offset_deg)))
-    limits = JointLimits(rad(joints.lower_deg), rad(joints.upper_deg), rad(joints.speed_deg_s))
+    accelerations = None if joints.acceleration_deg_s2 is None else rad(joints.acceleration_deg_s2)
+    limits = JointLimits(rad(joints.lower_deg), rad(joints.upper_deg), rad(joints.speed_deg_s), accelerations)
     a, b, c, d, e, f = joints.names
     words = form.manufacturer, form.model
     return Robot(form.name, arm, limits, (a, b, c, d, e, f), *words, **sources, dynamics=_dynamics_from(form.dynamics))
@@ -89,7 +90,8 @@ def robot_data(robot: Robot) -> dict[str, Any]:
                 "lower_deg": deg(limits.lower),
                 "upper_deg": deg(limits.upper),
                 "speed_deg_s": deg(limits.speed),
-            },
+            }
+            | ({} if limits.acceleration is None else {"acceleration_deg_s2": deg(limits.acceleration)}),
         }
         | ({} if robot.dynamics is None else {"dynamics": _dynamics_data(robot.dynamics)})
     )
@@ -206,6 +208,7 @@ def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_p
         psi_zero=np.array(plain(psi_zero_vector(vector, target, direction, tool, T_base_part, where))),
         profile=profile,
         branch=form.branch,
+        group=form.group or "",
     )
 
 

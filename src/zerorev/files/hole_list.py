@@ -225,7 +225,7 @@ def _decimal(layout: Layout, rows: list[ListedHole]) -> Decimal:
 def _as_pointed(meaning: Meaning, layout: Layout) -> Meaning:
     """What the columns of a table say of its points takes the place of what the job says."""
     if layout.points == "both":
-        return replace(AS_IN_A_JOB, breakthrough_mm=meaning.breakthrough_mm)
+        return replace(AS_IN_A_JOB, breakthrough_mm=meaning.breakthrough_mm, branch=meaning.branch)
     return replace(meaning, point="entry") if layout.points == "entry" else meaning
 
 
@@ -261,7 +261,7 @@ def _data(row: ListedHole, layout: Layout, decimal: Decimal, meaning: Meaning) -
     values: dict[str, Any] = {}
     for name, (at, factor) in layout.columns.items():
         cell = row.cells[at]
-        if name == "id":
+        if name in ("id", "group"):
             values[name] = cell
         elif cell or name not in OPTIONAL or (name == "depth_mm" and meaning.depth_mm is None):
             values[name] = factor * number_of(cell, decimal, f"line {row.line}, column {name}")
@@ -277,4 +277,6 @@ def _data(row: ListedHole, layout: Layout, decimal: Decimal, meaning: Meaning) -
     if "branch" in values:
         branch = values["branch"]
         data["branch"] = int(branch) if branch.is_integer() else branch
+    if values.get("group"):
+        data["group"] = values["group"]
     return data

@@ -27,12 +27,14 @@ class Meaning:
         point: whether targets are bottoms of strokes, or the points where the drill enters.
         depth_mm: of the holes that have none of their own, or None.
         breakthrough_mm: how far the tip runs beyond the bottom.
+        branch: of the holes that name none, or None.
     """
 
     normals: Normals = "in"
     point: Point = "bottom"
     depth_mm: float | None = None
     breakthrough_mm: float = 0.0
+    branch: int | None = None
 
 
 AS_IN_A_JOB = Meaning()
@@ -61,7 +63,8 @@ def as_in_a_job(hole: HoleForm, meaning: Meaning) -> HoleForm:
         ahead = unit(direction, f"hole {hole.id}, direction")
         target = list(plain(np.array(target) + further * ahead))
     stroke = None if depth is None else depth + meaning.breakthrough_mm
-    return hole.model_copy(update={"target_mm": target, "direction": direction, "depth_mm": stroke})
+    branch = meaning.branch if hole.branch is None else hole.branch
+    return hole.model_copy(update={"target_mm": target, "direction": direction, "depth_mm": stroke, "branch": branch})
 
 
 def meaning_of(form: JobFile) -> Meaning:
@@ -70,4 +73,4 @@ def meaning_of(form: JobFile) -> Meaning:
     Args:
         form: the job.
     """
-    return Meaning(form.normals, form.point, form.depth_mm, form.breakthrough_mm)
+    return Meaning(form.normals, form.point, form.depth_mm, form.breakthrough_mm, form.branch)

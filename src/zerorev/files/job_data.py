@@ -65,7 +65,8 @@ def _hole_data(hole: Hole, T_base_part: Array) -> dict[str, Any]:
     }
     if hole.profile is not None:
         data |= {"psi_deg": deg(hole.profile.psi), "standoff_mm": mm(hole.profile.standoff)}
-    return data if hole.branch is None else data | {"branch": hole.branch}
+    branch = {} if hole.branch is None else {"branch": hole.branch}
+    return data | branch | ({"group": hole.group} if hole.group else {})
 
 
 def _reference(job: Job) -> str | list[float]:

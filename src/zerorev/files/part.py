@@ -12,7 +12,7 @@ import os
 import re
 import sys
 import zlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib.metadata import version
 from pathlib import Path
@@ -22,7 +22,7 @@ from typing import Any, BinaryIO
 from zerorev.errors import InputError, OutputError
 from zerorev.files.output import as_output_error, check_file, write_pieces
 from zerorev.files.plan_conversion import answer_from
-from zerorev.files.plan_data import answer_data, asked_data, plan_head
+from zerorev.files.plan_data import answer_data, asked_data, plan_head, sequence_data
 from zerorev.files.plan_schema import DepthHole, PlanHole
 from zerorev.files.stated_forms import data_of
 from zerorev.files.text import Document, json_pieces
@@ -123,10 +123,12 @@ class Part:
             form: PlanHole | DepthHole = checked(self._form, Document(where, entry))
             yield answer_from(form, where)
 
-    def finish(self, said: Sequence[Finding] = ()) -> None:
+    def finish(self, plan: Plan, changed: Mapping[int, HolePlan], said: Sequence[Finding] = ()) -> None:
         """Write the file that it becomes, whole or not at all, and remove the part.
 
         Args:
+            plan: with the order of the holes and the moves between them; its own holes do not matter.
+            changed: answers that take the place of finished ones, by the number of the hole.
             said: findings of the whole plan that are known only at its end.
 
         Raises:
@@ -134,7 +136,11 @@ class Part:
         """
         head = dict(self._head)
         findings = [*head.pop("findings"), *map(data_of, said)]
-        write_pieces(self._target, json_pieces(head | {"holes": self._entries(), "findings": findings}))
+        entries = (
+            answer_data(changed[n], self._strokes) if n in changed else entry for n, entry in enumerate(self._entries())
+        )
+        rest = sequence_data(plan) | {"findings": findings}
+        write_pieces(self._target, json_pieces(head | {"holes": entries} | rest))
         self.done = 0
 
     def _entries(self) -> Iterator[dict[str, Any]]:

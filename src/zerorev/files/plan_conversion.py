@@ -17,11 +17,12 @@ from zerorev.files.conversion import (
     tool_data,
     tool_from,
 )
-from zerorev.files.plan_data import MOTION, SCORE, twist_spread
+from zerorev.files.plan_data import MOTION, SCORE, answer_data, twist_spread
 from zerorev.files.plan_schema import DepthFile, DepthHole, GivenForm, JointsDegForm, LostMotionForm, PlanFile, PlanHole
 from zerorev.files.stated_forms import Form, agree, noun_from
-from zerorev.files.units import m, rad, rad_per_m
-from zerorev.files.validation import inside
+from zerorev.files.text import Document
+from zerorev.files.units import deg, m, mm, plain, rad, rad_per_m
+from zerorev.files.validation import checked, inside
 from zerorev.model._arrays import UNIT_TOLERANCE, Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
@@ -37,12 +38,13 @@ from zerorev.model.plan import (
     Optimality,
     Plan,
     Score,
+    Transition,
     Verification,
     Within,
 )
 from zerorev.model.profile import Profile
 
-__all__ = ["answer_from", "plan_from"]
+__all__ = ["answer_from", "as_written", "plan_from", "written_motion"]
 
 N = TypeVar("N")
 
@@ -74,7 +76,36 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
         name=form.name,
         findings=_nouns_from(Finding, form.findings),
         strokes="asked" if isinstance(form, PlanFile) else "deepest",
+        **_sequence_from(form),
     )
+
+
+def _sequence_from(form: PlanFile | DepthFile) -> dict[str, Any]:
+    """The order of the holes and the moves between them.
+
+    Raises:
+        InputError: an order that names a hole twice, or one that there is none of; only a part of it is there.
+    """
+    missing = {each is None for each in (form.order, form.transitions, form.cycle_time_s)}
+    if form.order is None or form.transitions is None or form.cycle_time_s is None:
+        if missing != {True}:
+            raise InputError(
+                "some are null", where="order, transitions, cycle_time_s", accepted="all or none of them null"
+            )
+        return {}
+    ids = [hole.id for hole in form.holes]
+    if len(set(form.order)) < len(form.order) or not set(form.order) <= set(ids):
+        raise InputError(
+            "names a hole twice, or one that is not there", where="order", accepted="ids of the holes, each once"
+        )
+    moves = tuple(
+        noun_from(
+            Transition, each, start=each.start, to=each.to, joints=rad(each.joints_deg),
+            findings=_nouns_from(Finding, each.findings),
+        )
+        for each in form.transitions
+    )  # fmt: skip
+    return {"order": tuple(form.order), "transitions": moves, "cycle_time": form.cycle_time_s}
 
 
 def _same_numbers(written: str, computed: str) -> None:
@@ -100,6 +131,27 @@ def answer_from(form: PlanHole | DepthHole, where: str) -> HolePlan:
     return _hole_plan_from(form.plan, f"{where}, plan")
 
 
+def written_motion(motion: Motion) -> Motion:
+    """A motion as it is read again from a plan file: with the digits that are written.
+
+    Args:
+        motion: of a hole.
+    """
+    profile = motion.profile
+    digits = plain(mm(profile.standoff)), plain(deg(profile.psi)), plain(deg(motion.joints))
+    return Motion(Profile(m(digits[0]), rad(digits[1])), motion.branch, rad(digits[2]))
+
+
+def as_written(answer: HolePlan) -> HolePlan:
+    """An answer as it is read again from a plan file: with the digits that are written.
+
+    Args:
+        answer: of a hole.
+    """
+    form = checked(PlanHole, Document(f"hole {answer.hole.id}", answer_data(answer, "asked")))
+    return _hole_plan_from(form, f"hole {answer.hole.id}")
+
+
 def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
     with inside(where):
         for name, vector in (("direction", form.direction), ("psi_zero", form.psi_zero)):
@@ -114,6 +166,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             psi_zero=np.array(form.psi_zero),
             profile=given_profile(given.standoff_mm, given.psi_deg, form.depth_mm),
             branch=given.branch,
+            group=form.group or "",
         )
         return noun_from(
             HolePlan,

@@ -14,7 +14,8 @@ from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, LostMotion, Motion, Plan, Score, Strokes
 from zerorev.model.stated import stated
 
-__all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "twist_spread"]
+__all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "sequence_data",
+           "twist_spread"]  # fmt: skip
 
 FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "deepest": DepthFile}
 """What file a plan becomes, by its strokes."""
@@ -27,7 +28,21 @@ def plan_data(plan: Plan) -> dict[str, Any]:
     """The plan as plain data, in the form of a plan file or, where its strokes are the deepest, of a depth file."""
     head = plan_head(plan)
     findings = head.pop("findings")
-    return head | {"holes": [answer_data(hole, plan.strokes) for hole in plan.holes], "findings": findings}
+    holes = [answer_data(hole, plan.strokes) for hole in plan.holes]
+    return head | {"holes": holes} | sequence_data(plan) | {"findings": findings}
+
+
+def sequence_data(plan: Plan) -> dict[str, Any]:
+    """The order of the holes and the moves between them, as they stand in the file after the holes."""
+    if not plan.order:
+        return {"order": None, "transitions": None, "cycle_time_s": None}
+    moves = [
+        {"from": move.start, "to": move.to, "joints_deg": deg(move.joints)}
+        | data_of(move)
+        | {"findings": [data_of(finding) for finding in move.findings]}
+        for move in plan.transitions
+    ]
+    return dict(plain({"order": plan.order, "transitions": moves, "cycle_time_s": plan.cycle_time}))
 
 
 def plan_head(plan: Plan) -> dict[str, Any]:
@@ -53,6 +68,7 @@ def asked_data(hole: Hole) -> dict[str, Any]:
     """What was asked of one hole."""
     return {
         "id": hole.id,
+        "group": hole.group or None,
         "target_mm": mm(hole.target),
         "direction": hole.direction,
         "depth_mm": mm(hole.depth),

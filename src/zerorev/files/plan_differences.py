@@ -17,9 +17,15 @@ COMPARED = ("motion", "figure", "search", "check")
 
 
 def fields_differ(
-    stated: Any, found: Any, slack: Mapping[str, float], path: str = "", *, size: float = 1.0
+    stated: Any,
+    found: Any,
+    slack: Mapping[str, float],
+    path: str = "",
+    *,
+    size: float = 1.0,
+    fields: dict[str, Field] = HOLE_FIELDS,
 ) -> Iterator[str]:
-    """The fields of a hole of a plan file whose value is another one.
+    """The fields of a hole of a plan file, or of its head, whose value is another one.
 
     Args:
         stated: the hole as plain data, or what stands at the path in it.
@@ -27,17 +33,20 @@ def fields_differ(
         slack: by path, what the digits of the file leave open of a number besides its tolerance, in its unit.
         path: of both.
         size: of the robot (`Robot.size`); a large arm is at rest at a lower rate.
+        fields: what is done with each.
     """
     if isinstance(stated, dict) and isinstance(found, dict):
         for key, value in stated.items():
-            yield from fields_differ(value, found[key], slack, f"{path}.{key}" if path else key, size=size)
+            yield from fields_differ(
+                value, found[key], slack, f"{path}.{key}" if path else key, size=size, fields=fields
+            )
         return
-    field = field_of(path, HOLE_FIELDS)
+    field = field_of(path, fields)
     if field is None or field.how not in COMPARED or (stated is None and field.optional):
         return
     if isinstance(stated, list) and isinstance(found, list) and len(stated) == len(found):
         for i, value in enumerate(stated):
-            yield from fields_differ(value, found[i], slack, f"{path}[{i}]", size=size)
+            yield from fields_differ(value, found[i], slack, f"{path}[{i}]", size=size, fields=fields)
     elif not _same(stated, found, field._replace(nil=field.nil / size), slack.get(path, 0.0)):
         yield differ(path, stated, found)
 

@@ -65,12 +65,23 @@ HEAD_FIELDS: dict[str, Field] = {
     "tool": Field("input"),
     "part_frame": Field("input"),
     "settings": Field("input"),
+    "order": Field("input"),
+    "transitions": _EXACT,
+    "transitions.from": _EXACT,
+    "transitions.to": _EXACT,
+    "transitions.joints_deg": Field("figure", DIGITS, 1e-5),  # a lead-in is cut where a search ends
+    "transitions.time_s": Field("figure", DIGITS, 1e-6),
+    "transitions.changes_posture": _EXACT,
+    "transitions.largest_axis_move_deg": Field("figure", DIGITS, 1e-5),
+    "transitions.findings": Field("finding"),
+    "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),
 }
 """By the path of a field in a file; an input and a finding stand for all below them."""
 
 HOLE_FIELDS: dict[str, Field] = {
     "id": Field("input"),
+    "group": Field("input"),
     "target_mm": Field("input"),
     "direction": Field("input"),
     "depth_mm": Field("input"),
@@ -130,6 +141,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "lost_motion.events.leg": _EXACT,
     "lost_motion.events.standoff_mm": Field("figure", DIGITS, 1e-7),
     "lost_motion.events.friction": _EXACT,
+    "cycle_time_s": Field("figure", DIGITS, 1e-6, optional=True),
     "findings": Field("finding"),
 }
 """Likewise of a hole, by the path within it; that of a depth file has its own below `plan`."""

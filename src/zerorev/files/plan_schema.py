@@ -34,6 +34,7 @@ from zerorev.model.plan import (
     LostMotionEvent,
     Optimality,
     Score,
+    Transition,
     Verification,
     Within,
 )
@@ -52,6 +53,7 @@ __all__ = [
     "PlanFile",
     "PlanHead",
     "PlanHole",
+    "TransitionForm",
     "VerifiedForm",
 ]
 
@@ -155,6 +157,9 @@ class PlanHole(Form):
     # Any: as it is stated in Score or HolePlan
 
     id: Name = Field(description="text: the hole's id")
+    group: Name | None = Field(
+        default=None, description="text: with which it is drilled in an order by groups; or null"
+    )
     target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, base frame")
     direction: Unit = Field(description="three numbers: unit vector into the material, base frame")
     depth_mm: Depth = Field(description="a number above 0 [mm]: the stroke")
@@ -218,6 +223,22 @@ class PlanHole(Form):
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 
 
+@keys_of(Transition, needed=True)
+class TransitionForm(Form):
+    """The move of all axes at once from where one hole ends to where the next one begins."""
+
+    model_config = ConfigDict(populate_by_name=True)
+
+    start: Name | None = Field(
+        alias="from", description="text: id of the hole that is left; or null: the home position"
+    )
+    to: Name | None = Field(description="text: id of the hole that is drilled next; or null: the home position")
+    joints_deg: Annotated[list[SixDeg], Field(min_length=2, max_length=100)] = Field(
+        description="a list of two or more entries of six numbers [deg]: where the move begins, stops and ends"
+    )
+    findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
+
+
 class DepthHole(Form):
     """One hole's deepest stroke."""
 
@@ -237,6 +258,19 @@ class PlanHead(Form):
     tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
     part_frame: FrameForm = Field(description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame")
     settings: SettingsForm = Field(description="a mapping of the job's settings")
+    order: Annotated[list[Name], Field(max_length=MOST_HOLES, fail_fast=True)] | None = Field(
+        default=None,
+        description="a list of the ids of the holes that have a motion, as they are drilled; or null: as listed",
+    )
+    transitions: Annotated[list[TransitionForm], Field(max_length=MOST_HOLES + 1, fail_fast=True)] | None = Field(
+        default=None,
+        description="a list of from, to, joints_deg, time_s, changes_posture, largest_axis_move_deg and findings: the "
+        "moves between the holes in their order; or null: not computed",
+    )
+    cycle_time_s: NotNegative | None = Field(
+        default=None,
+        description="a number, 0 or more [s]: holes and transitions together; or null: not computed",
+    )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")
 
 

@@ -144,6 +144,10 @@ class JointsForm(Form):
     lower_deg: SixDeg = Field(description="six numbers [deg]: the lower joint limits")
     upper_deg: SixDeg = Field(description="six numbers [deg]: the upper joint limits")
     speed_deg_s: SixPositive = Field(description="six numbers above 0 [deg/s]: the greatest joint speeds")
+    acceleration_deg_s2: SixPositive | None = Field(
+        default=None,
+        description="six numbers above 0 [deg/s^2]: the greatest joint accelerations; or null: guessed for times",
+    )
 
 
 class LinkForm(Form):
@@ -275,6 +279,9 @@ class HoleForm(Form):
         default=None,
         description="a whole number from 0 to 7: the IK branch of the given motion, or the only one to search",
     )
+    group: Id | None = Field(
+        default=None, description="text or a whole number: with which it is drilled where the order is by groups"
+    )
 
 
 class ColumnsForm(Form):
@@ -295,6 +302,7 @@ class ColumnsForm(Form):
     exit_y_mm: Name | None = Field(default=None, description="text: the column of the exit point's y")
     exit_z_mm: Name | None = Field(default=None, description="text: the column of the exit point's z")
     branch: Name | None = Field(default=None, description="text: the column of the only IK branch to search")
+    group: Name | None = Field(default=None, description="text: the column of the groups")
 
 
 class JobFile(SettingsForm):
@@ -331,6 +339,9 @@ class JobFile(SettingsForm):
     )
     depth_mm: Depth | None = Field(
         default=None, description="a number above 0 [mm]: the stroke of each hole that has none of its own"
+    )
+    branch: Branch | None = Field(
+        default=None, description="a whole number from 0 to 7: the only IK branch of each hole that names none"
     )
     normals: Literal["in", "out"] = Field(
         default="in", description="in or out: whether directions point into the material, or out of it"

@@ -29,8 +29,8 @@ COLUMNS = ("id", "x_mm", "y_mm", "z_mm", "i", "j", "k", "depth_mm")
 POINT, DIRECTION = COLUMNS[1:4], COLUMNS[4:7]
 ENTRY = ("entry_x_mm", "entry_y_mm", "entry_z_mm")
 EXIT = ("exit_x_mm", "exit_y_mm", "exit_z_mm")
-OPTIONAL = ("depth_mm", "branch")
-KNOWN = (*COLUMNS, *ENTRY, *EXIT, "branch")
+OPTIONAL = ("depth_mm", "branch", "group")
+KNOWN = (*COLUMNS, *ENTRY, *EXIT, "branch", "group")
 
 DELIMITERS = {"\t": "tabs", ";": "semicolons", ",": "commas"}
 MOST_NAMED = 12

@@ -29,6 +29,7 @@ class Hole:
             Y_base, the reference `base_y`.
         profile: a given motion, evaluated instead of searched for.
         branch: the branch of the given motion (0..7); with no `profile`, the only branch to search.
+        group: with which it is drilled where the job's order is by groups.
     """
 
     id: str
@@ -38,6 +39,7 @@ class Hole:
     psi_zero: Array = field(default_factory=lambda: np.array([0.0, 1.0, 0.0]))
     profile: Profile | None = None
     branch: int | None = None
+    group: str = ""
 
     def __post_init__(self) -> None:
         """Check the numbers; scale the direction; make psi_zero perpendicular to it."""

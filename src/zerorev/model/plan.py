@@ -20,7 +20,7 @@ from zerorev.model.shown import Shown
 from zerorev.model.stated import Choice, Switch, Whole, with_attributes
 from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Texts
 from zerorev.model.tool import Tool
-from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT
+from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT, S
 
 __all__ = [
     "Baseline",
@@ -34,6 +34,7 @@ __all__ = [
     "Plan",
     "Score",
     "Strokes",
+    "Transition",
     "Verification",
     "Within",
     "named_holes",
@@ -291,6 +292,30 @@ class HolePlan(Shown):
     critical_rates: Array | None = None
     certified_within: Within | None = None
     lost_motion: LostMotion | None = None
+    cycle_time: Annotated[
+        float | None,
+        Figure("time of the hole's own moves at their feeds", S, least=0, null=None, none="no motion", added=True),
+    ] = None
+
+
+@dataclass(frozen=True)
+class Transition:
+    """The move of all axes at once from where one hole ends to where the next one begins.
+
+    Attributes:
+        start: id of the hole that is left; None: the home position.
+        to: id of the hole that is drilled next; None: the home position.
+        joints: where it begins and ends, and between which points it stops [rad], shape (n, 6).
+        findings: what a user should know of it.
+    """
+
+    start: str | None
+    to: str | None
+    joints: Array
+    time: Annotated[float, Figure("all axes together, each with its greatest speed and acceleration", S, least=0)]
+    changes_posture: Annotated[bool, Switch("whether the two ends are of different branches")]
+    largest_axis_move: Annotated[float, Figure("greatest turn of one axis", DEG, least=0)]
+    findings: tuple[Finding, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -306,6 +331,9 @@ class Plan(Shown):
         name: of the job.
         findings: about the whole plan.
         strokes: whether the stroke of each hole is the one `asked` for or its `deepest` without a reversal.
+        order: ids of the holes that have a motion, as they are drilled; empty: as they are listed.
+        transitions: the moves between them, in order.
+        cycle_time: of the holes and transitions together [s]; None: not known.
     """
 
     robot: Robot
@@ -316,11 +344,24 @@ class Plan(Shown):
     name: str = "job"
     findings: tuple[Finding, ...] = ()
     strokes: Strokes = "asked"
+    order: tuple[str, ...] = ()
+    transitions: tuple[Transition, ...] = ()
+    cycle_time: float | None = None
 
     @property
     def all_findings(self) -> tuple[Finding, ...]:
-        """The plan's findings, then each hole's."""
-        return self.findings + tuple(finding for hole in self.holes for finding in hole.findings)
+        """The plan's findings, then each hole's, then each transition's."""
+        return (
+            self.findings
+            + tuple(finding for hole in self.holes for finding in hole.findings)
+            + tuple(finding for move in self.transitions for finding in move.findings)
+        )
+
+    @property
+    def in_order(self) -> tuple[HolePlan, ...]:
+        """The holes as they are drilled, then those that have no motion."""
+        place = {hole_id: n for n, hole_id in enumerate(self.order)}
+        return tuple(sorted(self.holes, key=lambda hole: place.get(hole.hole.id, len(place))))
 
 
 for _noun in (
@@ -335,5 +376,6 @@ for _noun in (
     Within,
     Optimality,
     HolePlan,
+    Transition,
 ):
     _noun.__doc__ = with_attributes(_noun)

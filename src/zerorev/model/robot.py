@@ -47,11 +47,13 @@ class JointLimits:
         lower: least angle [rad], shape (6,).
         upper: greatest angle [rad], shape (6,).
         speed: greatest speed [rad/s], shape (6,).
+        acceleration: greatest acceleration [rad/s^2], shape (6,), or None where it is not known.
     """
 
     lower: Array
     upper: Array
     speed: Array
+    acceleration: Array | None = None
 
     def __post_init__(self) -> None:
         """Check shapes, finiteness and order."""
@@ -61,6 +63,10 @@ class JointLimits:
             raise InputError("a lower joint limit is not below its upper one", accepted="lower < upper for each joint")
         if not (self.speed > 0).all():
             raise InputError("a joint speed is not positive", accepted="speeds above 0")
+        if self.acceleration is not None:
+            object.__setattr__(self, "acceleration", finite(self.acceleration, (6,), "joint limits, acceleration"))
+            if not (self.acceleration > 0).all():
+                raise InputError("a joint acceleration is not positive", accepted="accelerations above 0")
 
 
 @dataclass(frozen=True)

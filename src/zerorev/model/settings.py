@@ -19,6 +19,7 @@ Legs = Literal["straight", "free"]
 
 GOOD = "What counts as a good motion"
 RUN = "How it is run"
+SEQUENCE = "How the holes follow each other"
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
 
 
@@ -172,6 +173,37 @@ class Settings:
             label="thrust",
         ),
     ] = 0.0
+    order: Annotated[
+        Literal["listed", "best", "groups"],
+        Choice(
+            words={
+                "listed": "as the job lists them",
+                "best": "as the time between holes is least that is found",
+                "groups": "group after group as the job first names them, best within each",
+            },
+            note="The order in which the holes are drilled",
+            before="listed",
+            group=SEQUENCE,
+            label="order",
+        ),
+    ] = "listed"
+    posture_freedom: Annotated[
+        float,
+        Number(
+            "share by which the joints of all holes together may travel more than the least, so that the arm keeps its "
+            "posture and its turns from hole to hole",
+            note="A motion with more reversals, or below the motion threshold, is never taken for it; 0: each hole "
+            "keeps its own best motion",
+            before=0.0,
+            least=0,
+            most=1e3,
+            label="more travel for one posture",
+        ),
+    ] = 0.1
+    home_joints: Annotated[
+        tuple[float, ...] | None,
+        Six("controller angles where the job begins and ends", DEG, none="it begins and ends at its holes"),
+    ] = None
     proof_boxes: Annotated[
         int,
         Whole(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from zerorev.model._arrays import Array
 
-__all__ = ["DEG", "DEG_PER_MM", "MM", "MM_S", "NEWTON", "NM_PER_RAD", "ONE", "PERCENT", "RPM", "UM_PER_N", "Unit"]
+__all__ = ["DEG", "DEG_PER_MM", "MM", "MM_S", "NEWTON", "NM_PER_RAD", "ONE", "PERCENT", "RPM", "UM_PER_N", "S", "Unit"]
 
 V = TypeVar("V", float, "Array")
 
@@ -54,6 +54,7 @@ MM = Unit("mm", "mm", "m", per=1e3, length=1, most=1e6)
 MM_S = Unit("mm/s", "mm_s", "m/s", per=1e3, length=1)
 DEG = Unit("deg", "deg", "rad", angle=True, most=36_000)
 DEG_PER_MM = Unit("deg/mm", "deg_per_mm", "rad/m", angle=True, times=1e3, length=-1, most=1e4)
+S = Unit("s", "s", "s")
 NEWTON = Unit("N", "n", "N", most=1e6)
 NM_PER_RAD = Unit("N m/rad", "nm_per_rad", "N m/rad")
 PERCENT = Unit("%", "percent", per=100)

@@ -13,7 +13,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings, check_masses
-from zerorev.model.plan import Baseline, HolePlan, Optimality
+from zerorev.model.plan import Baseline, HolePlan, Motion, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
@@ -25,6 +25,7 @@ from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
+from zerorev.program.lead_in import find_lead_in
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
 from zerorev.search.deepest import Deepest
@@ -34,7 +35,7 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.twins import gentlest_first
 from zerorev.verify.check import verify_hole
 
-__all__ = ["lever_findings", "motion_findings", "plan", "plan_deepest"]
+__all__ = ["cycle_time", "lever_findings", "motion_findings", "plan", "plan_deepest", "with_another_motion"]
 
 SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
 # lengths for an arm of size 1 (`Robot.size`)
@@ -174,9 +175,44 @@ def _answered(
         critical_rates=_critical_rates(drilling, best.profile, best.branch),
         lost_motion=lost_motion_of(drilling, best.profile, best.branch, settings.thrust),
     )
+    assert answer.motion is not None
     verified = verify_hole(robot, tool, settings, answer)
-    answer = replace(answer, verified=verified)
+    answer = replace(answer, verified=verified, cycle_time=cycle_time(drilling, settings, answer.motion))
     return replace(answer, findings=motion_findings(drilling, settings, answer))
+
+
+def with_another_motion(drilling: Drilling, settings: Settings, answer: HolePlan, motion: Candidate) -> HolePlan:
+    """The answer of a hole with another of its good motions, checked: what is known of the hole itself stays.
+
+    Args:
+        drilling: what is drilled.
+        settings: how.
+        answer: with the best motion of the hole, planned.
+        motion: the other one, counted from the hole's own target.
+    """
+    again = _answered(drilling, settings, "planned", motion)
+    of_the_motion = motion_findings(drilling, settings, answer)
+    optimality = answer.optimality
+    if optimality is not None and optimality.travel_at_least is not None and optimality.gap is not None:
+        gap = 1 - optimality.travel_at_least / motion.score.travel if motion.score.travel > 0 else optimality.gap
+        optimality = replace(optimality, gap=gap)
+    again = replace(again, optimality=optimality, deepest=answer.deepest, deepest_at_most=answer.deepest_at_most)
+    others = tuple(finding for finding in answer.findings if finding not in of_the_motion)
+    return replace(again, findings=(*motion_findings(drilling, settings, again), *others))
+
+
+def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
+    """Time of the hole's own moves at their feeds [s], lead-in and all; what speeding up and stopping take is left out.
+
+    Args:
+        drilling: what is drilled.
+        settings: with the feeds.
+        motion: of the hole.
+    """
+    profile = motion.profile
+    inwards = find_lead_in(drilling, motion, settings.lead_in).length + float(profile.distance[profile.corner])
+    outwards = float(profile.distance[-1] - profile.distance[profile.corner])
+    return inwards / settings.feed_plunge + outwards / settings.feed_retract
 
 
 def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:

@@ -1,11 +1,12 @@
-"""Whole jobs: hole after hole on as many processor cores as wanted, in bounded memory, and never twice."""
+"""Whole jobs: hole after hole on as many processor cores as wanted, and never twice; then the sequence of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from dataclasses import replace
 
 from zerorev.files.part import Part
+from zerorev.files.plan_conversion import as_written
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan, Plan, Strokes
@@ -13,10 +14,11 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.planning.hole import lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import likely_mistakes
+from zerorev.planning.sequence import Sequenced, sequenced, time_of
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.workers import HERE, Machines, Workers, interrupts_held_back
 
-__all__ = ["answers", "plan_job", "unanswered"]
+__all__ = ["answers", "in_sequence", "plan_job", "unanswered"]
 
 
 def plan_job(
@@ -51,7 +53,11 @@ def plan_job(
         tried.add(answer)
         if progress:
             progress(len(found), len(job.holes))
-    whole = unanswered(job, strokes, tuple(found))
+    # the same sequence as of a plan file's digits, so that a run which is resumed from some ends alike
+    written = [as_written(answer) for answer in found]
+    sequence = sequenced(job, lambda: written, choose=strokes == "asked", machines=Machines(workers, scheduler))
+    holes = tuple(sequence.changed.get(n, answer) for n, answer in enumerate(found))
+    whole = in_sequence(unanswered(job, strokes, holes), sequence, [hole.cycle_time for hole in holes])
     return replace(whole, findings=(*whole.findings, *tried.findings()))
 
 
@@ -59,6 +65,18 @@ def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> 
     """The plan of a job but for its holes, or with these."""
     findings = (*lever_findings(job.robot, job.tool), *likely_mistakes(job))
     return Plan(job.robot, job.tool, job.settings, holes, job.T_base_part, job.name, findings, strokes)
+
+
+def in_sequence(plan: Plan, sequence: Sequenced, times: Iterable[float | None]) -> Plan:
+    """The plan with the order of its holes and the moves between them.
+
+    Args:
+        plan: of the same job.
+        sequence: of its holes.
+        times: what each hole takes [s], or None.
+    """
+    time = time_of(times, sequence.transitions)
+    return replace(plan, order=sequence.order, transitions=sequence.transitions, cycle_time=time)
 
 
 def answers(

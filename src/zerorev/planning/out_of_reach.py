@@ -52,8 +52,8 @@ def _steps(drilling: Drilling, wrists: Array) -> Array:
     shoulder = np.concatenate([arm.a1 * ahead, np.full((*radius.shape, 1), arm.c1)], axis=-1)
     between = shoulder - wrists
     # the forearm runs beside the plane of axis 1 by b, which leaves less of its length in the plane
-    far = np.linalg.norm(between, axis=-1)
-    apart = np.sqrt(np.maximum(far**2 - arm.b**2, 0.0))
+    far = np.hypot(np.hypot(between[..., 0], between[..., 1]), between[..., 2])  # of any depth, without an overflow
+    apart = np.sqrt(np.maximum(far - arm.b, 0.0)) * np.sqrt(np.maximum(far + arm.b, 0.0))
     beyond = np.where(apart > reach, apart - reach + margin, 0.0) - np.where(apart < least, least - apart + margin, 0.0)
     worst = np.abs(beyond).argmax(axis=1)[:, None]
     amount = np.take_along_axis(beyond, worst, axis=1)

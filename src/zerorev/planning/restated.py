@@ -11,11 +11,13 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from typing import NamedTuple
 
 import numpy as np
 
-from zerorev.files.plan_data import answer_data
+from zerorev.files.plan_data import answer_data, sequence_data
 from zerorev.files.plan_differences import differ, fields_differ, findings_differ, leaves
+from zerorev.files.plan_fields import HEAD_FIELDS
 from zerorev.files.units import deg_per_mm, mm
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
@@ -26,8 +28,9 @@ from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
-from zerorev.planning.hole import lever_findings, motion_findings, plan, plan_deepest
+from zerorev.planning.hole import cycle_time, lever_findings, motion_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
+from zerorev.planning.sequence import moves_between, time_of
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import subject, verify_hole
 from zerorev.verify.digits import moved_figures
@@ -86,15 +89,57 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
     holes: list[HolePlan] = []
     if progress:
         progress(0, len(stated.holes))
+    chosen = stated.strokes == "asked" and len(stated.holes) > 1 and stated.settings.posture_freedom > 0
+    least = 0.0
     with Workers(
-        partial(check_hole, stated.robot, stated.tool, stated.settings, stated.strokes), Machines(workers)
+        partial(check_hole, stated.robot, stated.tool, stated.settings, stated.strokes, chosen=chosen),
+        Machines(workers),
     ) as checkers:
-        for hole, (verified, messages) in zip(stated.holes, checkers.map(stated.holes, len(stated.holes)), strict=True):
-            holes.append(replace(hole, verified=verified))
-            wrong += [_error(message, hole.hole.id) for message in messages]
+        for hole, checked in zip(stated.holes, checkers.map(stated.holes, len(stated.holes)), strict=True):
+            holes.append(replace(hole, verified=checked.verified))
+            wrong += [_error(message, hole.hole.id) for message in checked.wrong]
+            least += checked.least_travel
             if progress:
                 progress(len(holes), len(stated.holes))
+    wrong += [_error(message, None) for message in _sequence_differs(stated, least if chosen else np.inf)]
     return Checked(replace(stated, holes=tuple(holes)), tuple(wrong))
+
+
+class CheckedHole(NamedTuple):
+    """What the check of one hole gives.
+
+    Attributes:
+        verified: the outcome, None without a motion.
+        wrong: one sentence for each field that differs: its name, what is stated and what is found.
+        least_travel: of the motion that is found when it is searched for again [rad], or of the stated one.
+    """
+
+    verified: Verification | None
+    wrong: tuple[str, ...]
+    least_travel: float = 0.0
+
+
+def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
+    """The order has to name each hole that has a motion, the moves have to be those between them in that order.
+
+    Together the motions must not travel more than the least by more than the share that was allowed.
+    """
+    travel = sum(hole.score.travel for hole in stated.holes if hole.score is not None)
+    allowed = (1 + stated.settings.posture_freedom) * least
+    if travel > allowed * (1 + BETTER):
+        yield differ("travel_deg of all holes", float(np.rad2deg(travel)), float(np.rad2deg(allowed)))
+    if not stated.order:
+        return
+    moving = [hole.hole.id for hole in stated.holes if hole.motion is not None]
+    if sorted(stated.order) != sorted(moving):
+        yield differ("order", list(stated.order), moving)
+        return
+    moves = moves_between(stated)
+    found = replace(stated, transitions=moves, cycle_time=time_of((hole.cycle_time for hole in stated.holes), moves))
+    data = sequence_data(stated), sequence_data(found)
+    yield from fields_differ(*data, {}, fields=HEAD_FIELDS)
+    said = ([finding for move in each.transitions for finding in move.findings] for each in (stated, found))
+    yield from (f"transitions, {message}" for message in findings_differ(*said))
 
 
 def without_proofs(plan: Plan) -> Plan:
@@ -110,8 +155,8 @@ def without_proofs(plan: Plan) -> Plan:
 
 
 def check_hole(
-    robot: Robot, tool: Tool, settings: Settings, strokes: Strokes, stated: HolePlan
-) -> tuple[Verification | None, tuple[str, ...]]:
+    robot: Robot, tool: Tool, settings: Settings, strokes: Strokes, stated: HolePlan, *, chosen: bool = False
+) -> CheckedHole:
     """Check the motion of one hole, and compute again what is stated of it.
 
     Args:
@@ -120,10 +165,7 @@ def check_hole(
         settings: as planned.
         strokes: of the plan.
         stated: what is claimed.
-
-    Returns:
-        the outcome of the check, None without a motion; and one sentence for each field that differs: its name, what is
-        stated and what is found.
+        chosen: whether the motion may have been chosen for the sequence of the holes, at the cost of some travel.
     """
     deepest = strokes == "deepest" and stated.hole.profile is None
     again = (
@@ -133,7 +175,8 @@ def check_hole(
     )
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
-        return None, (*differences, *findings_differ(_but(stated.findings, OF_A_PROOF), again.findings))
+        unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), again.findings)
+        return CheckedHole(None, (*differences, *unsaid_or_foreign))
     own = figures(robot, tool, settings, stated)
     answer = stated if own is None else own.answer
     # what is stated of the figures is compared below, so the check of the motion is given those that were found
@@ -150,6 +193,7 @@ def check_hole(
         measures=answer.measures,
         lost_motion=answer.lost_motion,
         verified=stated.verified,
+        cycle_time=cycle_time(Drilling(robot, tool, stated.hole), settings, stated.motion),
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
     )
     drilling = Drilling(robot, tool, stated.hole)
@@ -161,15 +205,16 @@ def check_hole(
     differences += findings_differ(_but(stated.findings, *unsaid), _but(said, *unsaid))
     differences += _asked_differs(robot, settings, stated, deepest)
     if own is not None:
-        differences += _turn_differs(robot, settings, stated.motion, own)
-        differences += () if deepest else _improved(robot, tool, settings, found, again)
+        differences += () if chosen else _turn_differs(robot, settings, stated.motion, own)
+        differences += () if deepest else _improved(robot, tool, settings, found, again, chosen=chosen)
     if stated.verified is not None:
         fails = not verified.passed or bool(differences)
         outcome = replace(stated, verified=_comparable(stated.verified, verified, fails))
         differences += _fields_differ(robot, stated, outcome, digits)
     # of what is stated, too, where that is the same
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
-    return replace(verified, subject=known), tuple(differences)
+    least = again.score if again.score is not None else stated.score
+    return CheckedHole(replace(verified, subject=known), tuple(differences), least.travel if least else 0.0)
 
 
 def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:
@@ -265,8 +310,14 @@ def _turn_differs(robot: Robot, settings: Settings, motion: Motion, own: Figures
         yield differ(path, float(np.rad2deg(motion.joints[0, joint])), float(np.rad2deg(angle)))
 
 
-def _improved(robot: Robot, tool: Tool, settings: Settings, found: HolePlan, again: HolePlan) -> Iterator[str]:
-    """A motion that is stated as the best must not be beaten by the one that is found when it is searched for again."""
+def _improved(
+    robot: Robot, tool: Tool, settings: Settings, found: HolePlan, again: HolePlan, *, chosen: bool
+) -> Iterator[str]:
+    """A motion that is stated as the best must not be beaten by the one that is found when it is searched for again.
+
+    One that may have been chosen for the sequence has to be as good but for what it costs; of that the sequence may
+    take a share, of the travel that of all holes together.
+    """
     order = Order(Drilling(robot, tool, found.hole), settings)
     ours, theirs = _candidate(order, found), _candidate(order, again)
     if ours is None or theirs is None:
@@ -283,6 +334,9 @@ def _improved(robot: Robot, tool: Tool, settings: Settings, found: HolePlan, aga
         ("min_rate_deg_per_mm, below the threshold by", deg_per_mm(mine.lack).item(), deg_per_mm(other.lack).item()),
         ("settings.objective, its cost", mine.cost, other.cost),
     ):
+        if chosen and stated is mine.cost:
+            free = settings.objective == "travel" and not settings.weights
+            better += np.inf if free else settings.posture_freedom * abs(better)
         if better < stated - BETTER * abs(stated):
             yield f"{differ(path, stated, better)} by searching again"
         if abs(better - stated) > BETTER * abs(stated):

@@ -51,7 +51,7 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
     """
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
     refused = refusals(plan)
-    moving = tuple(hole.hole.id for hole in plan.holes if hole.motion is not None)
+    moving = tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None)
     if None in refused or all(hole_id in refused for hole_id in moving):
         return Expected(plan, dialect, refused, moving)
     exported = build_program(plan, skip_failed=True)
@@ -72,7 +72,7 @@ class Expected:
         plan: whose.
         dialect: in which it is written.
         refused: why a hole must not be exported, by its id.
-        moving: ids of the holes that have a motion.
+        moving: ids of the holes that have a motion, as they are drilled.
         exported: the moves of all that may be exported; None where nothing may.
         head: what stands before them.
         holes: what is written for each, by its id.

@@ -117,7 +117,7 @@ class Program:
         T_flange_tool: the tool frame as written, shape (4, 4), translation [m].
         T_base_part: the part frame, shape (4, 4), translation [m]; every pose is given in it.
         settings: how the motion is run.
-        holes: in the plan's order.
+        holes: as they are drilled.
         findings: what was shortened or left out on the way here.
     """
 
@@ -146,7 +146,7 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
             only where no hole is left or the plan as a whole has an error finding.
     """
     refused = refusals(plan)
-    kept = [hole for hole in plan.holes if hole.hole.id not in refused]
+    kept = [hole for hole in plan.in_order if hole.hole.id not in refused]
     if None in refused or (refused and not skip_failed) or not kept:
         reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
         raise NotExportableError(tuple(reasons) or ("the plan has no holes",))

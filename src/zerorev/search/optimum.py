@@ -33,7 +33,16 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import LEAST_RATE
 from zerorev.search.weighted import search_weighted
 
-__all__ = ["LEAST_STROKE", "Optimum", "alternatives", "best_motion", "deepest_as_drilled", "optimum", "too_short"]
+__all__ = [
+    "LEAST_STROKE",
+    "Optimum",
+    "alternatives",
+    "best_motion",
+    "deepest_as_drilled",
+    "on_each_branch",
+    "optimum",
+    "too_short",
+]
 
 MORE_MARGIN = ((1.0, 10.0), (1.05, 1e3), (1.5, 1e4), (3.0, 1e5))  # of the threshold, and of the least rate besides
 LEAST_STROKE = 1e-7  # of the reach: in a shorter one the joints move by little more than the rounding of an angle
@@ -122,6 +131,29 @@ def alternatives(drilling: Drilling, settings: Settings) -> list[Candidate]:
     found += [best_motion(drilling.on_branch(branch), settings) for branch in branches]
     judged = (order.candidate(one.profile, one.branch) for one in found if one is not None)
     return sorted((one for one in judged if one is not None), key=order.rank)
+
+
+def on_each_branch(drilling: Drilling, settings: Settings) -> list[Candidate]:
+    """The best motion without a reversal of straight legs on each branch that has one, or on its other wrist flip.
+
+    Args:
+        drilling: what to drill; its `branch`, if any, is the only one searched.
+        settings: as for `optimum`.
+    """
+    pool = _Pool(drilling, settings)
+    found: list[Candidate] = []
+    for branch in Problem(pool.drilling, pool.settings).branches:
+        if branch % 2 and found and found[-1].branch == branch - 1:
+            # the rates of both flips are the same: only the limits can forbid the motion
+            flipped = pool.order.candidate(found[-1].profile, branch)
+            if flipped is not None:
+                found.append(flipped)
+                continue
+        one = without_reversal(Problem(pool.drilling.on_branch(branch), pool.settings))
+        if one is not None:
+            found.append(one)
+    drilled = (pool.from_the_target(one) for one in found if pool.allows(one))
+    return [one for one in drilled if one is not None]
 
 
 def too_short(drilling: Drilling) -> bool:

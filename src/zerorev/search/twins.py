@@ -14,7 +14,7 @@ from zerorev.motion.loads import lost_motion
 from zerorev.program.lead_in import find_lead_in
 from zerorev.search.rank import Candidate, Order
 
-__all__ = ["gentlest_first"]
+__all__ = ["gentlest_first", "led_in"]
 
 SAME_COST = 1e-9  # relative
 WORTH = 1e-7  # [m] by which the predicted lost motion has to be less
@@ -49,7 +49,11 @@ def gentlest_first(drilling: Drilling, settings: Settings, motion: Candidate) ->
         if lost > now - WORTH:
             break
         found = order.candidate(*likes[k][:2])
-        if found is not None and _as_good(order, found, motion) and _led_in(drilling, settings, found, motion):
+        if (
+            found is not None
+            and _as_good(order, found, motion)
+            and led_in(drilling, settings, found) >= led_in(drilling, settings, motion)
+        ):
             return found, motion
     return (motion,)
 
@@ -59,10 +63,8 @@ def _as_good(order: Order, one: Candidate, other: Candidate) -> bool:
     return mine[:2] <= best[:2] and mine.cost <= best.cost + SAME_COST * abs(best.cost)
 
 
-def _led_in(drilling: Drilling, settings: Settings, one: Candidate, other: Candidate) -> bool:
-    """Whether as much of the lead-in runs."""
-    lengths = []
-    for each in (one, other):
-        assert each.evaluation.motion is not None
-        lengths.append(find_lead_in(drilling, each.evaluation.motion, settings.lead_in).length)
-    return lengths[0] >= lengths[1] - SAME_LENGTH
+def led_in(drilling: Drilling, settings: Settings, motion: Candidate) -> float:
+    """How much of the lead-in of a motion runs [m], rounded so that twins compare."""
+    assert motion.evaluation.motion is not None
+    length = find_lead_in(drilling, motion.evaluation.motion, settings.lead_in).length
+    return round(length / SAME_LENGTH) * SAME_LENGTH

@@ -15,9 +15,11 @@ from dataclasses import replace
 from typing import Any
 
 from zerorev.errors import ZerorevError
+from zerorev.files.plan_conversion import as_written
 from zerorev.model.hole import Hole
 from zerorev.model.plan import HolePlan, Strokes
 from zerorev.planning.job import answers
+from zerorev.planning.sequence import Sequenced, sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words.outcome import outcome
 from zerorev.web.session import Session
@@ -200,27 +202,37 @@ def plan_selected(work: Work) -> None:
 def plan(work: Work, holes: Sequence[Hole], strokes: Strokes = "asked") -> None:
     """Plan holes of the job: fewest reversals, then what the settings ask for; or each as deep as it goes.
 
+    Where all holes have their answers then, they are planned as a sequence.
+
     Args:
         work: of the page.
-        holes: of its job.
+        holes: of its job; none: the sequence alone.
         strokes: those `asked` for or the `deepest` without a reversal.
     """
-    job = work.session.state.job
-    if job is None or not holes:
+    state = work.session.state
+    job, before = state.job, dict(state.answers) if strokes == state.strokes else {}
+    if job is None:
         return
-    asked = replace(job, holes=tuple(holes))
     what, done = ("planning", "planned") if strokes == "asked" else ("finding the deepest stroke of", "made deepest")
     ids = [hole.id for hole in holes]
-    tried, helps = TriedOtherwise(asked), list[str]()
+    helps = list[str]()
 
-    def found() -> Iterator[HolePlan]:
-        for answer in answers(asked, strokes=strokes, machines=Machines()):
-            tried.add(answer)
-            yield answer
-        if len(holes) > 1:
-            helps.extend(finding.message for finding in tried.findings())
+    def run() -> Iterator[HolePlan | Sequenced]:
+        found = before
+        if holes:
+            asked = replace(job, holes=tuple(holes))
+            tried = TriedOtherwise(asked)
+            for answer in answers(asked, strokes=strokes, machines=Machines()):
+                tried.add(answer)
+                yield answer
+                found[answer.hole.id] = answer
+            if len(holes) > 1:
+                helps.extend(finding.message for finding in tried.findings())
+        if len(job.holes) > 1 and all(hole.id in found for hole in job.holes):
+            written = [as_written(found[hole.id]) for hole in job.holes]
+            yield sequenced(job, lambda: written, choose=strokes == "asked", machines=Machines())
 
-    _answer(work, what, done, ids, strokes, found, helps)
+    _answer(work, what, done, ids, strokes, run, helps)
 
 
 def keep(work: Work) -> None:
@@ -256,27 +268,33 @@ def _answer(
     done: str,
     ids: Sequence[str],
     strokes: Strokes,
-    run: Callable[[], Iterable[HolePlan]],
+    run: Callable[[], Iterable[HolePlan | Sequenced]],
     helps: Sequence[str] = (),
 ) -> None:
     """Find answers of holes of the job; each is taken if the page still asks for the same.
 
-    When all are there, what then stands in `helps` is said, too.
+    A sequence of all holes is taken if they are all the same still. When all are there, what then stands in `helps` is
+    said, too.
     """
     job = work.session.state.job
     assert job is not None
     asked = {hole.id: hole for hole in job.holes}
 
-    def take(state: State, found: Sequence[HolePlan]) -> State | None:
+    def take(state: State, results: Sequence[HolePlan | Sequenced]) -> State | None:
         now = state.job
         if now is None or now.robot is not job.robot or now.tool is not job.tool or now.settings != job.settings:
             return None
         same = {hole.id for hole in now.holes if hole is asked.get(hole.id)}
+        found = [each for each in results if isinstance(each, HolePlan)]
+        for each in results:
+            if isinstance(each, Sequenced) and len(same) == len(asked):
+                found += each.changed.values()
+                state = replace(state, order=each.order)
         return answered(state, *(answer for answer in found if answer.hole.id in same), strokes=strokes)
 
     def said(state: State, seconds: float) -> str:
         found = (state.answers[key] for key in ids if key in state.answers)
         return "\n".join((outcome(done, found, seconds, proven=done == "proven"), *helps))
 
-    which = f"hole {ids[0]}" if len(ids) == 1 else f"{len(ids)} holes"
-    work.start(f"{what} {which}", len(ids), run, take, said=said if len(ids) > 1 else None)
+    which = f"hole {ids[0]}" if len(ids) == 1 else f"{len(ids)} holes" if ids else "the sequence"
+    work.start(f"{what} {which}", max(len(ids), 1), run, take, said=said if len(ids) > 1 else None)

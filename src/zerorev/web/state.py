@@ -18,6 +18,7 @@ from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
 from zerorev.planning.likely_mistakes import likely_mistakes
+from zerorev.planning.sequence import with_moves
 from zerorev.web.real_arm import RealArm
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ class State:
         trouble: why the last work came to nothing, in one sentence, or None.
         outcome: what the last work on many holes came to, in one sentence, or None.
         caution: what is probably wrong with the job, and what was left out where it was read, one per line, or None.
+        order: ids of the holes as they are drilled, as far as that was planned; those behind follow as listed.
         lacking: what the plan that was opened says of holes that it does not have, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
@@ -108,6 +110,7 @@ class State:
     trouble: str | None = None
     outcome: str | None = None
     caution: str | None = None
+    order: tuple[str, ...] = ()
     lacking: Finding | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
@@ -148,7 +151,7 @@ def opened_plan(plan: Plan) -> State:
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
     said = [replace(each, message=f"{each.message} (of the plan that was opened)") for each in plan.findings]
     lacking = next((each for each in said if each.kind == "unfinished"), None)
-    return State(job, answers, holes[0].id, strokes=plan.strokes, lacking=lacking)
+    return State(job, answers, holes[0].id, strokes=plan.strokes, order=plan.order, lacking=lacking)
 
 
 def opened_map(cells: MapSlice) -> State:
@@ -295,7 +298,7 @@ def plan_of(state: State) -> Plan:
     if missing := state.unplanned:
         message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
         findings = (*findings, Finding("warning", "unfinished", message))
-    return replace(plan, findings=findings)
+    return with_moves(replace(plan, findings=findings, order=state.order))
 
 
 def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:

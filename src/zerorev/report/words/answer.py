@@ -17,7 +17,7 @@ from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words import tables, terminal
 from zerorev.report.words.lost_motion import PREDICTED
 
-__all__ = ["ROWS", "Shown", "how_deep"]
+__all__ = ["ROWS", "Shown", "how_deep", "minutes", "sequence_line"]
 
 ROWS = 60  # of a table that can still be read
 
@@ -38,7 +38,9 @@ class Shown:
             answers: to take at once.
         """
         self._plan, self._rows = plan, list[HolePlan]()
-        self._findings: list[Finding] = list(plan.findings)
+        self._findings: list[Finding] = [
+            *plan.findings, *(finding for move in plan.transitions for finding in move.findings)
+        ]  # fmt: skip
         self._status, self._reversals = Counter[str](), Counter[int]()
         self._proven, self._bounded, self._weighed = 0, 0, False
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
@@ -115,7 +117,30 @@ class Shown:
             lines.append(Text(f"deepest without a reversal: {how_deep(self._plan.settings)}"))
         if self._weighed:
             lines.append(Text(f"lost motion: {PREDICTED}"))
+        if self._plan.transitions:
+            lines.append(Text(sequence_line(self._plan)))
         return lines + tables.finding_lines(self._findings)
+
+
+def sequence_line(plan: Plan) -> str:
+    """The moves between the holes of a plan, and what all of it takes."""
+    moves = plan.transitions
+    changes = sum(move.changes_posture for move in moves)
+    text = (
+        f"{len(moves)} move{'s' if len(moves) > 1 else ''} between holes, {sum(move.time for move in moves):.1f} s, "
+        f"{changes or 'no'} change{'' if changes == 1 else 's'} of posture"
+    )
+    return text if plan.cycle_time is None else f"{text}; cycle time {minutes(plan.cycle_time)}"
+
+
+def minutes(seconds: float) -> str:
+    """A time as people read it."""
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
 
 
 class _Figure:

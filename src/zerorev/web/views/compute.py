@@ -141,10 +141,13 @@ def _choice(options: dict[Any, str], name: str, chosen: Callable[[Any], None]) -
 
 def _plan(work: Work, holes: Sequence[Hole], strokes: Strokes) -> None:
     state = work.session.state
+    if not holes:
+        return
     if len(holes) > 1:  # of many, those that have no such answer yet: a job that was stopped is resumed
         holes = [hole for hole in holes if strokes != state.strokes or hole.id not in state.answers]
-        if not holes:
+        if not holes and (state.order or strokes == "deepest"):
             note("Every hole has its answer already.")
+            return
     computing.plan(work, holes, strokes)
 
 

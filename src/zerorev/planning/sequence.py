@@ -1,0 +1,361 @@
+"""The holes of a job one after the other: which of its good motions each takes, in which order, and the moves between.
+
+Each hole offers members (`zerorev.search.members`), each with its other turns within the limits. Chosen are those with
+the fewest changes of the arm's posture from hole to hole and then the least time between holes, such that all holes
+together travel at most `posture_freedom` more than the least: for one order exactly, by a shortest path through layers
+(`kernels.tour.chain`) and a bisection of what travel weighs. Orders are improved by annealing, which proves nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise, product
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from zerorev.files.plan_conversion import written_motion
+from zerorev.kernels import tour
+from zerorev.model._arrays import Array
+from zerorev.model.hole import Hole
+from zerorev.model.job import Job, Settings
+from zerorev.model.plan import HolePlan, Plan, Transition
+from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion.between import accelerations, transition
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.evaluation import Evaluation, evaluated
+from zerorev.motion.joint_path import FULL_TURN
+from zerorev.planning.hole import with_another_motion
+from zerorev.program.lead_in import find_lead_in
+from zerorev.search.members import members
+from zerorev.search.rank import Candidate, Order
+from zerorev.workers import HERE, Machines, Workers
+
+__all__ = ["Offer", "Sequenced", "moves_between", "sequenced", "time_of", "with_moves"]
+
+Whole = npt.NDArray[np.int64]
+SEED = 1  # of the annealing
+CHANGE = 1e3  # [s] what a change of posture weighs for the members of an order: more than any time between two holes
+CHANGE_ANNEALED = 5.0  # [s] the same while orders are tried
+HOT, COLD = 0.03, 0.0003  # [s]
+STEPS_A_HOLE, FEWEST_STEPS, MOST_STEPS = 20_000, 200_000, 20_000_000
+NEAR = 10  # holes that may well follow one
+LEAST_WEIGHT, MOST_WEIGHT, WEIGHINGS = 1e-3, 1e7, 40  # [s/rad] of travel, and how often it is bisected
+MOST_TURNS = 16  # ways to turn the axes that one motion offers
+ROUNDING = 1e-9
+
+
+@dataclass(frozen=True)
+class Member:
+    """One motion that a hole may take.
+
+    Attributes:
+        profile: the spin along the path.
+        branch: 0..7.
+        joints: at the breakpoints, with turns [rad], shape (n, 6).
+        start: where its lead-in begins [rad], shape (6,).
+        travel: sum over the joints of the angle moved [rad].
+    """
+
+    profile: Profile
+    branch: int
+    joints: Array
+    start: Array
+    travel: float
+
+
+Offer = tuple[Member, ...]
+"""The members of a hole, the one that was planned first; empty: it has no motion."""
+
+
+@dataclass(frozen=True)
+class Sequenced:
+    """What the sequence makes of a job's answers.
+
+    Attributes:
+        changed: answers with another motion than the best one, by the number of the hole.
+        order: ids of the holes that have a motion, as they are drilled.
+        transitions: the moves between them.
+    """
+
+    changed: dict[int, HolePlan]
+    order: tuple[str, ...]
+    transitions: tuple[Transition, ...]
+
+
+def sequenced(
+    job: Job,
+    answers: Callable[[], Iterable[HolePlan]],
+    *,
+    choose: bool = True,
+    machines: Machines = HERE,
+    progress: Callable[[int, int], None] | None = None,
+) -> Sequenced:
+    """Choose motions and an order for the holes of a job.
+
+    Args:
+        job: robot, tool, holes, settings.
+        answers: gives the answers of the holes in the order of the job, each time it is called.
+        choose: whether motions may be chosen; else only the order, and the turns stay.
+        machines: to run it on; the outcome is the same.
+        progress: called with (holes done, holes in all).
+    """
+    count = len(job.holes)
+    choose = choose and count > 1 and job.settings.posture_freedom > 0
+    with Workers(partial(_offer, job.robot, job.tool, job.settings, choose), machines) as workers:
+        offers: list[Offer] = []
+        for offer in workers.map(answers(), count):
+            offers.append(offer)
+            if progress:
+                progress(len(offers), count)
+    changed: dict[int, HolePlan] = {}
+    while True:
+        order, chosen = _chosen(job, offers)
+        other = {n: member for n, member in chosen.items() if member is not offers[n][0] and n not in changed}
+        failed = False
+        with Workers(partial(_answered, job.robot, job.tool, job.settings), machines) as workers:
+            wanted = [(answer, other[n]) for n, answer in enumerate(answers()) if n in other] if other else []
+            for n, answer in zip(sorted(other), workers.map(wanted, len(wanted)), strict=True):
+                if answer is None:  # it does not pass its check, so it is not offered any more
+                    offers[n] = tuple(member for member in offers[n] if member is not other[n])
+                    failed = True
+                else:
+                    changed[n] = replace(answer, hole=job.holes[n])
+        if not failed:
+            break
+        changed.clear()
+    places = []
+    for n in order:
+        if n in changed:
+            places.append(_place(job.robot, job.tool, job.settings, changed[n]))
+        else:
+            member = chosen[n]
+            places.append(_Place(job.holes[n].id, member.branch, member.start, member.joints[-1]))
+    return Sequenced(changed, tuple(job.holes[n].id for n in order), _transitions(job.robot, job.settings, places))
+
+
+def moves_between(plan: Plan) -> tuple[Transition, ...]:
+    """The moves between the holes of a plan in the order that it states.
+
+    Args:
+        plan: any; holes without a motion are passed over. Of the motions the digits count that a file has.
+    """
+    holes = [hole for hole in plan.in_order if hole.motion is not None]
+    places = [_place(plan.robot, plan.tool, plan.settings, hole) for hole in holes]
+    return _transitions(plan.robot, plan.settings, places)
+
+
+def with_moves(plan: Plan) -> Plan:
+    """The plan with the moves between its holes, in the order that it has so far; holes that lack follow as listed.
+
+    Args:
+        plan: any.
+    """
+    plan = replace(plan, order=tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None))
+    moves = moves_between(plan)
+    time = time_of((hole.cycle_time for hole in plan.holes), moves)
+    return replace(plan, transitions=moves, cycle_time=time)
+
+
+def time_of(holes: Iterable[float | None], moves: Iterable[Transition]) -> float | None:
+    """What holes and the moves between them take together [s]; None where no hole has a motion.
+
+    Args:
+        holes: the time of each hole [s], or None.
+        moves: between them.
+    """
+    times = [time for time in holes if time is not None]
+    return sum(times) + sum(move.time for move in moves) if times else None
+
+
+class _Place(NamedTuple):
+    """Where a hole begins and ends: its id, the branch, and the joints [rad], shape (6,) each."""
+
+    id: str
+    branch: int
+    start: Array
+    end: Array
+
+
+def _place(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> _Place:
+    assert answer.motion is not None
+    motion = written_motion(answer.motion)
+    start = find_lead_in(Drilling(robot, tool, answer.hole), motion, settings.lead_in).joints
+    return _Place(answer.hole.id, motion.branch, start, motion.joints[-1])
+
+
+def _transitions(robot: Robot, settings: Settings, places: Sequence[_Place]) -> tuple[Transition, ...]:
+    """The moves between holes in their order."""
+    home = None if settings.home_joints is None else np.array(settings.home_joints)
+    moves = []
+    if home is not None and places:
+        moves.append(transition(robot, None, places[0].id, (home, places[0].start), None))
+    for one, other in pairwise(places):
+        moves.append(transition(robot, one.id, other.id, (one.end, other.start), (one.branch, other.branch)))
+    if home is not None and places:
+        moves.append(transition(robot, places[-1].id, None, (places[-1].end, home), None))
+    return tuple(moves)
+
+
+def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: HolePlan) -> Offer:
+    """What one hole offers."""
+    motion, score = answer.motion, answer.score
+    if motion is None or score is None:
+        return ()
+    drilling = Drilling(robot, tool, answer.hole)
+    start = find_lead_in(drilling, motion, settings.lead_in).joints
+    planned = Member(motion.profile, motion.branch, motion.joints, start, score.travel)
+    passed = answer.verified is not None and answer.verified.passed
+    if not choose or not passed or answer.status != "planned":
+        return (planned,)
+    order = Order(drilling.without_motion(), settings)
+    best = order.judged(motion.profile, motion.branch, Evaluation(motion, score, ()))
+    assert best is not None
+    found = [planned]
+    for one in members(drilling, settings, best):
+        if one is best or _affordable(order, one, best):
+            found += _turned(drilling, settings, one, planned)
+    return tuple(found)
+
+
+def _affordable(order: Order, one: Candidate, best: Candidate) -> bool:
+    """Whether a member costs no more than the freedom allows; travel is budgeted over the whole job instead."""
+    settings = order.settings
+    if settings.objective == "travel" and not settings.weights:
+        return True
+    least = order.rank(best).cost
+    return order.rank(one).cost <= least + settings.posture_freedom * abs(least) + ROUNDING
+
+
+def _turned(drilling: Drilling, settings: Settings, one: Candidate, planned: Member) -> Iterator[Member]:
+    """A motion with each of its turns within the limits, but for the planned one; where turns are asked for, those."""
+    motion = one.evaluation.motion
+    assert motion is not None
+    start = find_lead_in(drilling, motion, settings.lead_in).joints
+    same = motion.branch == planned.branch and motion.profile is planned.profile
+    if not same:
+        yield Member(motion.profile, motion.branch, motion.joints, start, one.score.travel)
+    if settings.near_joints is not None:
+        return
+    limits, points = drilling.robot.limits, np.vstack([start, motion.joints])
+    first = np.ceil((limits.lower - points.min(axis=0)) / FULL_TURN - ROUNDING).astype(int)
+    last = np.floor((limits.upper - points.max(axis=0)) / FULL_TURN + ROUNDING).astype(int)
+    ways = product(*(range(min(a, 0), max(b, 0) + 1) for a, b in zip(first.tolist(), last.tolist(), strict=True)))
+    for _, way in zip(range(MOST_TURNS), (way for way in ways if any(way)), strict=False):
+        turn = FULL_TURN * np.array(way)
+        yield Member(motion.profile, motion.branch, motion.joints + turn, start + turn, one.score.travel)
+
+
+def _answered(robot: Robot, tool: Tool, settings: Settings, task: tuple[HolePlan, Member]) -> HolePlan | None:
+    """The answer of a hole that takes another member; None where that does not pass the check."""
+    answer, member = task
+    drilling = Drilling(robot, tool, answer.hole)
+    found = with_turns(drilling, settings, member.profile, member.branch, member.joints)
+    if found is None:
+        return None
+    again = with_another_motion(drilling, settings, answer, found)
+    return again if again.verified is not None and again.verified.passed else None
+
+
+def with_turns(
+    drilling: Drilling, settings: Settings, profile: Profile, branch: int, joints: Array
+) -> Candidate | None:
+    """A motion with the turns of some joints [rad], shape (n, 6); None where the limits do not allow them."""
+    near = replace(settings, near_joints=tuple(joints.mean(axis=0).tolist()))
+    found = Order(drilling.without_motion(), settings).judged(
+        profile, branch, evaluated(drilling, profile, branch, near)
+    )
+    if found is None or found.evaluation.motion is None:
+        return None
+    return found if np.abs(found.evaluation.motion.joints[0] - joints[0]).max() < 1.0 else None
+
+
+def _chosen(job: Job, offers: Sequence[Offer]) -> tuple[list[int], dict[int, Member]]:
+    """The order of the holes that have a motion, by number, and the member of each."""
+    settings, limits = job.settings, job.robot.limits
+    able = [n for n, offer in enumerate(offers) if offer]
+    if not able:
+        return [], {}
+    counts = [len(offers[n]) for n in able]
+    flat = [member for n in able for member in offers[n]]
+    travel = np.array([member.travel for member in flat])
+    home = np.empty((0, 6)) if settings.home_joints is None else np.array([settings.home_joints])
+    asked = tour.Members(
+        first=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
+        start=np.array([member.start for member in flat]),
+        end=np.array([member.joints[-1] for member in flat]),
+        branch=np.array([member.branch for member in flat], dtype=np.int64),
+        own=np.zeros(len(flat)),
+        speed=limits.speed,
+        acceleration=accelerations(limits),
+        change=CHANGE,
+        home=home,
+    )
+    least = sum(min(member.travel for member in offers[n]) for n in able)
+    budget = (1 + settings.posture_freedom) * least + ROUNDING
+    order, block = _blocks(settings, [job.holes[n] for n in able])
+    choice, weight = _within(asked, order, travel, budget)
+    if settings.order != "listed" and len(able) > 2:
+        order, choice = _improved(asked, order, choice, block, weight * travel)
+        choice, _ = _within(asked, order, travel, budget)
+    numbers = [able[k] for k in order.tolist()]
+    return numbers, {n: flat[m] for n, m in zip(numbers, choice.tolist(), strict=True)}
+
+
+def _blocks(settings: Settings, holes: Sequence[Hole]) -> tuple[Whole, Whole]:
+    """The order to begin with, and for each place of it the first and last place that its hole may take, (N, 2)."""
+    count = len(holes)
+    if settings.order != "groups":
+        return np.arange(count), np.tile([0, count - 1], (count, 1))
+    names = list(dict.fromkeys(hole.group for hole in holes))
+    groups = [[n for n, hole in enumerate(holes) if hole.group == name] for name in names]
+    ends = np.cumsum([len(group) for group in groups])
+    block = [(end - len(group), end - 1) for group, end in zip(groups, ends.tolist(), strict=True) for _ in group]
+    return np.array([n for group in groups for n in group]), np.array(block)
+
+
+def _within(asked: tour.Members, order: Whole, travel: Array, budget: float) -> tuple[Whole, float]:
+    """The best members of an order that travel no more than the budget, and what travel has to weigh for that [s/rad].
+
+    Of the weights that keep the budget it is the least one found; another choice within the budget, which is the best
+    for no weight, may still be better.
+    """
+    choice = np.empty(order.size, dtype=np.int64)
+
+    def fits(weight: float) -> bool:
+        tour.chain(asked._replace(own=weight * travel), order, choice)
+        return bool(travel[choice].sum() <= budget)
+
+    if fits(0.0):
+        return choice.copy(), 0.0
+    low, high = np.log(LEAST_WEIGHT), np.log(MOST_WEIGHT)
+    fits(float(np.exp(high)))
+    kept, kept_weight = choice.copy(), float(np.exp(high))
+    for _ in range(WEIGHINGS):
+        middle = (low + high) / 2
+        if fits(float(np.exp(middle))):
+            high, kept, kept_weight = middle, choice.copy(), float(np.exp(middle))
+        else:
+            low = middle
+    return kept, kept_weight
+
+
+def _improved(asked: tour.Members, order: Whole, choice: Whole, block: Whole, own: Array) -> tuple[Whole, Whole]:
+    """A better order and its members, by annealing."""
+    order, choice = order.copy(), choice.copy()
+    count = order.size
+    middles = np.empty((count, 6))
+    middles[order] = (asked.start[choice] + asked.end[choice]) / 2 / asked.speed
+    near = cKDTree(middles).query(middles, min(NEAR + 1, count))[1][:, 1:].astype(np.int64)
+    steps = int(np.clip(STEPS_A_HOLE * count, FEWEST_STEPS, MOST_STEPS))
+    tour.anneal(
+        asked._replace(change=CHANGE_ANNEALED, own=own), np.ascontiguousarray(near), block, order, choice, steps,
+        HOT, COLD, SEED,
+    )  # fmt: skip
+    return order, choice
