@@ -138,6 +138,14 @@ def test_drills_that_point_ahead_or_aside(tcp, rpy):
     assert said(job(tool=Tool.from_mm_deg(tcp, rpy)))[0] == set()
 
 
+def test_angles_of_a_tool_in_the_order_of_kuka():
+    """A = 0, B = 30, C = 180 of a drill that points ahead and aside, typed as roll, pitch, yaw."""
+    assert said(job(tool=Tool.from_mm_deg((0, 0, 150), (180, 30, 0))))[0] == set()
+    kinds, message = said(job(tool=Tool.from_mm_deg((0, 0, 150), (0, 30, 180))))
+    assert kinds == {"tool_direction", "frame_angles"}
+    assert "are they A, B, C, which are yaw, pitch, roll? rpy_deg: [180, 30, 0], or abc_deg" in message
+
+
 def test_drills_that_all_point_towards_the_robot():
     assert said(job(direction=(-1, 0, 0)))[0] == {"normals"}
     assert said(job(direction=(0, 0, 1), targets=PLACES - [0, 0, 0.9]))[0] == {"normals"}
@@ -190,7 +198,8 @@ def test_what_is_said_of_them():
     beside = replace(one, id="b", target=one.target + np.array([0, 4e-4, 0]))
     opposite = replace(one, id="c", target=one.target - [0.02, 0, 0], direction=-one.direction)
     assert list(same_holes([one, far, beside])) == ["h0 and b are drilled 0.4 mm apart: is one of them a duplicate?"]
-    assert "at the same place from opposite sides" in next(same_holes([one, opposite]))
+    assert "h0 and c are drilled on one axis from opposite sides" in next(same_holes([one, opposite]))
+    assert "h0 and f are drilled at the same place: " in next(same_holes([one, replace(one, id="f", depth=0.01)]))
     assert list(same_holes([one, replace(one, id="d", branch=3)])) == []
     given = Profile(np.array([0.02, 0, 0.02]), np.zeros(3))
     assert list(same_holes([one, replace(one, id="d", profile=given)])) == []
@@ -205,5 +214,5 @@ def test_many_at_one_place_end_soon():
     holes = [replace(one, id=f"h{n}") for n in range(3000)]
     lines = list(same_holes(holes))
     assert len(lines) == 6
-    assert "at the same place: " in lines[-1]
+    assert "that overlap so: " in lines[-1]
     assert " or more; " in lines[-1]

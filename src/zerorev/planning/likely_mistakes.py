@@ -6,7 +6,7 @@ warning that is wrong costs more than one that is missing, so each begins where 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -56,6 +56,7 @@ def likely_mistakes(job: Job) -> tuple[Finding, ...]:
         ("units", _setting_units(settings, holes)),
         ("normals", _towards_the_robot(robot, holes)),
         ("tool_direction", _tool_direction(robot, tool)),
+        ("frame_angles", _tool_angles(robot, tool)),
         ("base_column", _in_the_column(robot, holes, job.T_base_part)),
         ("duplicate", iter(()) if _in_one_place(holes) else same_holes(holes)),
     )
@@ -174,11 +175,24 @@ def _tool_direction(robot: Robot, tool: Tool) -> Iterator[str]:
     T, near = tool.T_flange_tcp, BESIDE_AXIS * robot.reach
     if not points_back(T, near):
         return
-    roll, pitch, yaw = (float(each) for each in np.rad2deg(rpy_of(T[:3, :3])))
     along, tip = ("({:g}, {:g}, {:g})".format(*(v.round(3) + 0.0)) for v in (-T[:3, 2], T[:3, 3] * 1e3))
     message = f"the drill points back at the flange, along {along} from a tip at {tip} mm"
-    other = _turned_about((roll, pitch, yaw), lambda R: not points_back(_with_rotation(T, R), near))
+    other = _turned_about(T, near)
     yield message + (f": is its turn the other way round, rpy_deg {other}?" if other else ": check rpy_deg and tcp_mm")
+
+
+def _tool_angles(robot: Robot, tool: Tool) -> Iterator[str]:
+    T, near = tool.T_flange_tcp, BESIDE_AXIS * robot.reach
+    roll, pitch, yaw = rpy_of(T[:3, :3])
+    swapped = rotation_rpy(yaw, pitch, roll)
+    ahead = -swapped[:, 2] @ T[:3, 3] > -BACK * np.linalg.norm(T[:3, 3])
+    if not (points_back(T, near) and ahead) or _turned_about(T, near):
+        return
+    other = ", ".join(f"{angle:.6g}" for angle in np.rad2deg([yaw, pitch, roll]).round(6) + 0.0)
+    yield (
+        "with the angles of the tool in the other order the drill does not point back at the flange: are they A, B, C, "
+        f"which are yaw, pitch, roll? rpy_deg: [{other}], or abc_deg"
+    )
 
 
 def _towards_the_robot(robot: Robot, holes: Sequence[Hole]) -> Iterator[str]:
@@ -199,13 +213,13 @@ def _with_rotation(T: Array, R: Array) -> Array:
     return turned
 
 
-def _turned_about(rpy_deg: tuple[float, float, float], good: Callable[[Array], bool]) -> str:
-    """The angles with the sign of one turned, where that is good; an empty text where none is."""
+def _turned_about(T: Array, near: float) -> str:
+    """The angles of a tool with the sign of one turned, where its drill then points ahead; else an empty text."""
+    angles = np.rad2deg(rpy_of(T[:3, :3]))
     for n in (1, 0, 2):
-        if abs(rpy_deg[n]) > 1e-6:
-            angles = [angle * (-1 if n == m else 1) for m, angle in enumerate(rpy_deg)]
-            if good(rotation_rpy(*np.deg2rad(angles))):
-                return "[" + ", ".join(f"{angle:.6g}" for angle in np.round(angles, 6) + 0.0) + "]"
+        other = np.where(np.arange(3) == n, -angles, angles)
+        if abs(angles[n]) > 1e-6 and not points_back(_with_rotation(T, rotation_rpy(*np.deg2rad(other))), near):
+            return "[" + ", ".join(f"{angle:.6g}" for angle in other.round(6) + 0.0) + "]"
     return ""
 
 

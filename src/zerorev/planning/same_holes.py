@@ -31,13 +31,14 @@ def same_holes(holes: Sequence[Hole]) -> Iterator[str]:
         return
     pairs = list(_pairs(searched))
     for one, other, apart in pairs[:MOST_SAID]:
-        where = "at the same place" if apart < 1e-6 else f"{apart * 1e3:.2g} mm apart"
+        same = np.allclose(searched[one].target, searched[other].target, rtol=0, atol=1e-6)
+        where = "at the same place" if same else "on one axis" if apart < 1e-6 else f"{apart * 1e3:.2g} mm apart"
         sides = " from opposite sides" if searched[one].direction @ searched[other].direction < 0 else ""
         yield f"{searched[one].id} and {searched[other].id} are drilled {where}{sides}: is one of them a duplicate?"
     if len(pairs) > MOST_SAID:
         rest = sorted({searched[n].id for pair in pairs[MOST_SAID:] for n in pair[:2]})
         count = f"{len(pairs) - MOST_SAID:,}{' or more' if len(pairs) >= MOST_PAIRS else ''}"
-        yield f"other pairs of holes that are drilled at the same place: {count}; {named_holes(rest)}"
+        yield f"other pairs of holes that overlap so: {count}; {named_holes(rest)}"
 
 
 def _pairs(holes: Sequence[Hole]) -> Iterator[tuple[int, int, float]]:
