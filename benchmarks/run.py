@@ -28,6 +28,7 @@ from benchmarks.parts import (
     parameter_map,
     plan,
     proof,
+    sequence,
     start,
     swarm,
     tolerance,
@@ -52,6 +53,7 @@ PARTS: dict[str, Callable[[Options], Section]] = {
     "start": start.run,
     "job": job.run,
     "plan": plan.run,
+    "sequence": sequence.run,
     "panel": panel.run,
     "holes": holes.run,
 }
