@@ -43,6 +43,8 @@ class Shown:
         ]  # fmt: skip
         self._status, self._reversals = Counter[str](), Counter[int]()
         self._proven, self._bounded, self._weighed = 0, 0, False
+        self._before, self._after, self._fixed = 0, 0, 0
+        self._worst: tuple[tuple[int, float], HolePlan] | None = None
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
                                                       "deepest beyond depth [mm]", "lost motion [mm]",
                                                       "certified within [mm]")}  # fmt: skip
@@ -67,6 +69,13 @@ class Shown:
             self._figures[name].add(value, answer.hole.id)
         if answer.score is not None:
             self._reversals[answer.score.reversals] += 1
+            self._after += answer.score.reversals
+            self._before += 0 if answer.baseline is None else answer.baseline.reversals
+            self._fixed += answer.baseline is None
+            slow = tables.slowest(answer.score, self._plan.settings)
+            bad = answer.score.reversals, -np.inf if slow is None else -slow[0]
+            if self._worst is None or bad > self._worst[0]:
+                self._worst = bad, answer
 
     def say(self, findings: Iterable[Finding]) -> None:
         """Take findings of the whole plan that are known only at its end."""
@@ -111,6 +120,8 @@ class Shown:
             kinds = ", ".join(f"{count} {status}" for status, count in sorted(self._status.items()))
             counts = ", ".join(f"{count} with {n} reversals" for n, count in sorted(self._reversals.items()))
             lines = [Text(f"{sum(self._status.values())} holes: {kinds}; {counts or 'no motion'}")]
+        if self._worst is not None:
+            lines += [Text(line) for line in self._summary(self._worst[1])]
         if self._bounded:
             lines.append(Text(f"optimum of straight legs: proven for {self._proven} of {self._bounded} holes"))
         if self._figures["deepest [mm]"].count:
@@ -120,6 +131,19 @@ class Shown:
         if self._plan.transitions:
             lines.append(Text(sequence_line(self._plan)))
         return lines + tables.finding_lines(self._findings)
+
+    def _summary(self, worst: HolePlan) -> Iterator[str]:
+        """Reversals before and after, and the hole that is worst off, where there are several."""
+        holes = sum(self._reversals.values())
+        without = f" ({self._fixed} of {holes} holes cannot be run so)" if self._fixed else ""
+        yield f"reversals: {self._before} at constant spin{without}, {self._after} as planned"
+        if holes > 1 and worst.score is not None:
+            slow, count = tables.slowest(worst.score, self._plan.settings), worst.score.reversals
+            why = f"{count} reversal{'' if count == 1 else 's'}"
+            if count == 0 and slow is not None:
+                rate = np.rad2deg(slow[0]) / 1e3
+                why = f"{self._plan.robot.joint_names[slow[1]]} moves {rate:.4f} deg/mm at its slowest"
+            yield f"worst hole: {worst.hole.id} ({why})"
 
 
 def sequence_line(plan: Plan) -> str:
