@@ -53,6 +53,7 @@ def refused(text, **options):
         f"# {HEADER}\n{','.join(ROW)}",
         f"{HEADER},,\n{','.join(ROW)},,,,",
         f"{HEADER}\n{','.join(ROW)},",
+        f"{HEADER}\n{','.join(ROW)}\n,,,,,,,\n" + ",".join(['""'] * 8),
         f"id,X [mm],Y (mm),z mm,i [-],j,k,depth_mm\n{','.join(ROW)}",
         f'colour;{HEADER.replace(",", ";")};note\nred;{";".join(ROW)};"a;b"',
     ],

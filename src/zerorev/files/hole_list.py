@@ -97,6 +97,9 @@ def given_of(form: JobFile) -> Given:
 def text_of_list(content: bytes) -> str:
     """The text of a table's file: UTF-8, or what its byte order mark says.
 
+    Args:
+        content: of the file.
+
     Raises:
         InputError: it is neither.
     """
@@ -211,6 +214,8 @@ def _rows(layout: Layout) -> tuple[list[ListedHole], int]:
         except csv.Error as error:
             problem = InputError(str(error), where=where, accepted="CSV, each row on a line of its own")
             found.append(ListedHole(number, (line,), problem=problem))
+            continue
+        if not any(cells):
             continue
         found.append(ListedHole(number, tuple(cells), problem=wrong_count(cells, layout, where)))
     return found, comments
