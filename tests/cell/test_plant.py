@@ -24,10 +24,18 @@ def path_of(reference):
     return path - path[reference.turn]
 
 
-@pytest.mark.parametrize("name", ["baseline", "plan"])
-@pytest.mark.parametrize("values", [NOMINAL, {**NOMINAL, **HEAVY}], ids=["nominal", "heavy"])
-def test_a_whole_motion_against_mujoco(published_plan, name, values):
-    """To 1.5 um at both tips, half a stroke on either side of the turn."""
+@pytest.mark.parametrize(
+    ("name", "values", "finer"),
+    [
+        ("plan", NOMINAL, 1),
+        ("plan", {**NOMINAL, **HEAVY}, 1),
+        pytest.param("baseline", NOMINAL, 8, marks=pytest.mark.long),
+        pytest.param("baseline", {**NOMINAL, **HEAVY}, 16, marks=pytest.mark.long),
+    ],
+    ids=["plan-nominal", "plan-heavy", "baseline-nominal", "baseline-heavy"],
+)
+def test_a_whole_motion_against_mujoco(published_plan, name, values, finer):
+    """To 1.5 um at both tips, half a stroke about the turn; MuJoCo's own steps, of first order, have to be finer."""
     reference = compared(published_plan, published_plan.holes[0], THESIS, (name,)).followed[name]
     parameters = ParameterSet(values)
     mine = run(reference, parameters)
@@ -40,7 +48,7 @@ def test_a_whole_motion_against_mujoco(published_plan, name, values):
         np.linalg.inv(masses), np.zeros_like(masses), masses.diagonal(axis1=1, axis2=2).min(axis=0),
     )  # fmt: skip
     load = mass, lever * tool.T_flange_tcp[:3, 3]
-    rotor, link = followed_by_mujoco(asked, parameters.arm(robot.dynamics), load, REST, TIME_STEP)
+    rotor, link = followed_by_mujoco(asked, parameters.arm(robot.dynamics), load, REST, TIME_STEP / finer)
     window = np.abs(path_of(reference)) <= 0.5 * reference.drilling.hole.depth
     for own, other in ((mine.rotor, rotor), (mine.link, link)):
         apart = np.linalg.norm(np.einsum("njk,nj->nk", reference.levers, own - other), axis=1)
@@ -88,20 +96,19 @@ def changes_with_half_the_step(reference, sets):
 def test_half_the_time_step_changes_little(published_plan):
     reference = compared(published_plan, published_plan.holes[2], THESIS, ("plan",)).followed["plan"]
     change, _ = changes_with_half_the_step(reference, drawn(24, 7))
-    assert np.median(change) < 0.2e-6
-    assert np.mean(change > 5e-6) <= 0.1
+    assert np.median(change) < 0.05e-6
+    assert np.quantile(change, 0.95) < 1e-6
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize(
-    ("name", "median", "most"), [("plan", 0.1e-6, 1e-6), ("baseline", 0.3e-6, 2e-6)], ids=["plan", "baseline"]
-)
-def test_half_the_time_step_over_many_arms(published_plan, name, median, most):
-    """Median and 95th percentile of the change; sets that hunt, which change by more than 5 um and 5 %, are few."""
-    reference = compared(published_plan, published_plan.holes[0], THESIS, (name,)).followed[name]
+@pytest.mark.parametrize("name", ["baseline", "plan"])
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_half_the_time_step_over_many_arms(published_plan, number, name):
+    """0.1 um in the median, 1 um at 95 %; sets that hunt, which change by more than 5 um and 5 %, are few."""
+    reference = compared(published_plan, published_plan.holes[number], THESIS, (name,)).followed[name]
     change, deviation = changes_with_half_the_step(reference, drawn(300, 1))
-    assert (np.median(change, axis=0) <= median).all()
-    assert (np.quantile(change, 0.95, axis=0) <= most).all()
+    assert (np.median(change, axis=0) <= 0.1e-6).all()
+    assert (np.quantile(change, 0.95, axis=0) <= 1e-6).all()
     hunts = (change > 5e-6) & (change > 0.05 * deviation)
     assert (hunts.mean(axis=0) <= 0.03).all()
 

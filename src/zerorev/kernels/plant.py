@@ -2,8 +2,10 @@
 
 The arm is followed as deviations from the reference: `rotor` is what the encoder sees less the reference, `link` what
 the link does less it. The links' accelerations are exact on the reference and linear in the deviations, which are of
-1e-3 rad; so are the weights. Semi-implicit Euler, speeds first; friction's states are advanced implicitly and cannot
-become unstable. SI units, joint side. No kernel raises.
+1e-3 rad; so are the weights. Angles are known at the steps and speeds between them (leapfrog). The controller takes the
+speed at a step from the last two, and friction is trapezoidal, so that the error falls with the square of the step.
+Gears and the wrist's links have fast modes: gears damp by the last speed, and friction behind a fast one is implicit,
+which is stable. SI units, joint side. No kernel raises.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ __all__ = ["Arm", "Reference", "follow"]
 Array = npt.NDArray[np.float64]
 STEPS = 10  # between two nodes of the reference
 SOFT = 1e-3  # [rad/s] below which the sense of the reference fades, or the feed-forward would chatter at rest
+SLOW = 0.03  # (frequency x step)^2 below which a mode is slow
 GAP, HYSTERESIS = 0.0, 1.0  # kinds of lost motion
 
 
@@ -94,11 +97,12 @@ class Arm(NamedTuple):
 
 
 @lean
-def bristles(z, speed, arm, dt):  # type: ignore[no-untyped-def]
-    """The state of friction one step on, between -1 and 1 at rest (LuGre, implicit)."""
+def bristles(z, speed, arm, dt, ahead):  # type: ignore[no-untyped-def]
+    """The state of friction one step on, between -1 and 1 at rest (LuGre); `ahead`: 1 implicit, 0.5 trapezoidal."""
     fast = speed / arm.stribeck
     peak = 1.0 + (arm.breakaway - 1.0) * np.exp(-fast * fast)
-    return (z + dt * speed / arm.presliding) / (1.0 + dt * abs(speed) / (arm.presliding * peak))
+    bent = dt * abs(speed) / (arm.presliding * peak)
+    return (z * (1.0 - (1.0 - ahead) * bent) + dt * speed / arm.presliding) / (1.0 + ahead * bent)
 
 
 @lean
@@ -130,13 +134,16 @@ def follow(reference, arm, rest, dt, rotor, link, drive):  # type: ignore[no-unt
     N = reference.q.shape[0]
     th, thd, ln, lnd = np.empty(6), np.zeros(6), np.empty(6), np.zeros(6)
     zm, zl, zh, integral = np.zeros(6), np.zeros(6), np.zeros(6), np.zeros(6)
-    push, damping, u = np.empty(6), np.empty(6), np.zeros(6)
+    push, damping, ahead_of, u, thd_before = np.empty(6), np.empty(6), np.empty(6), np.zeros(6), np.zeros(6)
     for i in range(6):
         load = reference.torque[0, i] - reference.outer[0, i]
         th[i] = 0.0
         ln[i] = -load / arm.stiffness[i]
         if arm.kind == GAP:
             ln[i] -= np.sign(load) * 0.5 * arm.gap[i]
+        # stuck, a link is held by its bristles and its gear: where that mode is fast, only the implicit rule is stable
+        held = arm.behind * arm.coulomb[i] / arm.presliding + arm.stiffness[i]
+        ahead_of[i] = 0.5 if held * dt * dt < SLOW * reference.inertia[i] else 1.0
         damping[i] = 2.0 * arm.damping * np.sqrt(arm.stiffness[i] * min(arm.drive[i], reference.inertia[i]))
     Ti = arm.reset / arm.bandwidth
     Kp = arm.position * arm.bandwidth
@@ -154,7 +161,7 @@ def follow(reference, arm, rest, dt, rotor, link, drive):  # type: ignore[no-unt
             for i in range(6):
                 rotor[n, i], link[n, i], drive[n, i] = th[i], ln[i], u[i]
         for m in range(inner):
-            w = (m + 1) / inner
+            w = m / inner
             for i in range(6):
                 rd = (1.0 - w) * reference.qd[node, i] + w * reference.qd[ahead, i]
                 rdd = (1.0 - w) * reference.qdd[node, i] + w * reference.qdd[ahead, i]
@@ -162,12 +169,14 @@ def follow(reference, arm, rest, dt, rotor, link, drive):  # type: ignore[no-unt
                     rd, rdd = 0.0, 0.0
                 need = (1.0 - w) * reference.torque[node, i] + w * reference.torque[ahead, i]
                 outer = (1.0 - w) * reference.outer[node, i] + w * reference.outer[ahead, i]
+                rd_before = rd - 0.5 * dt * rdd
+                th_rate = 1.5 * thd[i] - 0.5 * thd_before[i]
                 # controller, on the rotor's side
                 Kv = arm.bandwidth * arm.drive[i]
-                e = -Kp * th[i] - thd[i]
+                e = -Kp * th[i] - th_rate
                 sense = np.tanh(rd / SOFT)
                 ask = (
-                    Kv * (e + integral[i])
+                    Kv * (e + integral[i] + 0.5 * dt * e / Ti)
                     + arm.forward * (need + arm.drive[i] * rdd)
                     + arm.friction_forward * (arm.coulomb[i] * sense + arm.viscous[i] * rd)
                 )
@@ -177,14 +186,16 @@ def follow(reference, arm, rest, dt, rotor, link, drive):  # type: ignore[no-unt
                 else:
                     u[i] = np.sign(ask) * arm.limit[i]
                 # friction on both sides of the gear, and what the gear transmits
-                speed, follows = rd + thd[i], rd + lnd[i]
-                zm[i], zl[i] = bristles(zm[i], speed, arm, dt), bristles(zl[i], follows, arm, dt)
-                before = (1.0 - arm.behind) * (arm.coulomb[i] * zm[i] + arm.viscous[i] * speed)
+                speed, follows = rd_before + thd[i], rd_before + lnd[i]
+                zm[i] = bristles(zm[i], speed, arm, dt, 0.5)
+                zl[i] = bristles(zl[i], follows, arm, dt, ahead_of[i])
+                before = (1.0 - arm.behind) * (arm.coulomb[i] * zm[i] + arm.viscous[i] * (rd + th_rate))
                 behind = arm.behind * (arm.coulomb[i] * zl[i] + arm.viscous[i] * follows)
                 twist, rate = th[i] - ln[i], thd[i] - lnd[i]
                 if arm.kind == HYSTERESIS:
                     zh[i] = (zh[i] + dt * rate / (0.25 * arm.gap[i])) / (1.0 + dt * abs(rate) / (0.25 * arm.gap[i]))
                 gear = transmitted(arm, i, twist, rate, damping[i], zh[i])
+                thd_before[i] = thd[i]
                 thd[i] += dt * ((u[i] - before - gear) / arm.drive[i] - rdd)
                 push[i] = gear - behind - need + outer
                 for j in range(6):
