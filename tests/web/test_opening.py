@@ -14,6 +14,7 @@ from zerorev.files.io import job_from_text, plan_to_json, read_job, write_plan
 from zerorev.files.text import json_text
 from zerorev.files.yaml_text import yaml_text
 from zerorev.planning.job import plan_job
+from zerorev.planning.sequence import with_moves
 from zerorev.web.opening import demo, opened, opened_text
 from zerorev.web.state import plan_of
 
@@ -49,8 +50,8 @@ def test_a_plan_is_known_by_what_is_in_it(tmp_path, plan, name):
     write_plan(plan, tmp_path / name)
     state = opened(tmp_path / name)
     assert state.answer.status == "planned"
-    assert plan_to_json(plan_of(state)) == plan_to_json(plan)
-    assert plan_to_json(plan_of(opened_text(json_text(plan_to_json(plan)), "a.json"))) == plan_to_json(plan)
+    assert plan_to_json(with_moves(plan_of(state))) == plan_to_json(plan)
+    assert plan_to_json(with_moves(plan_of(opened_text(json_text(plan_to_json(plan)), "a.json")))) == plan_to_json(plan)
 
 
 @pytest.mark.parametrize("name", ["job.yaml", "job.yml", "job.txt"])

@@ -89,12 +89,14 @@ def _text(given: Iterator[bytes], name: str, accepted: str) -> str:
 
 
 def plan_written(given: Iterator[Any]) -> Iterator[bytes]:
-    """From the pieces of a plan to those of its file.
+    """From the pieces of a plan to those of its file, with the moves between its holes.
 
     Raises:
         InputError: the plan holds a number that no plan file may hold.
     """
-    return cut(json_text(plan_to_json(whole(given))).encode())
+    from zerorev.planning.sequence import with_moves
+
+    return cut(json_text(plan_to_json(with_moves(whole(given)))).encode())
 
 
 def job_written(given: Iterator[Any]) -> Iterator[tuple[str, str]]:

@@ -18,7 +18,6 @@ from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
 from zerorev.planning.likely_mistakes import likely_mistakes
-from zerorev.planning.sequence import with_moves
 from zerorev.web.real_arm import RealArm
 
 if TYPE_CHECKING:
@@ -284,7 +283,9 @@ def with_settings(state: State, settings: Settings) -> State:
 
 
 def plan_of(state: State) -> Plan:
-    """The plan of all holes that have an answer, as the command line would write it; a finding says which have none.
+    """The plan of all holes that have an answer, in their order; a finding says which have none.
+
+    The moves between the holes take a while, and are left to who writes the plan (`planning.sequence.with_moves`).
 
     Raises:
         InputError: none has an answer.
@@ -298,7 +299,7 @@ def plan_of(state: State) -> Plan:
     if missing := state.unplanned:
         message = f"only {len(holes):,} of {len(job.holes):,} holes planned; missing: {named_holes(missing)}"
         findings = (*findings, Finding("warning", "unfinished", message))
-    return with_moves(replace(plan, findings=findings, order=state.order))
+    return replace(plan, findings=findings, order=state.order)
 
 
 def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:
