@@ -84,7 +84,7 @@ def deviation(context: Context) -> Section:
 
 def _prior(context: Context) -> list[ParameterSet]:
     if "prior" not in context.kept:
-        context.kept["prior"] = drawn(min(FEW, 3 * context.seeds), SEED, held=("tool_lever",))
+        context.kept["prior"] = drawn(3 * context.seeds, SEED, held=("tool_lever",))
     found: list[ParameterSet] = context.kept["prior"]
     return found
 
