@@ -92,9 +92,7 @@ def _in_sequence(
     """The plan with the order of its holes and the moves between them, and the answers that it changes."""
     with terminal.progress("sequence", len(job.holes)) as progress:
         found = sequenced(job, answers, choose=head.strokes == "asked", machines=machines, progress=progress)
-    # of the cycle time no more is needed than the holes' own
-    times = [found.changed.get(n, answer).cycle_time for n, answer in enumerate(answers())]
-    return in_sequence(head, found, times), found.changed
+    return in_sequence(head, found), found.changed
 
 
 def _answer(

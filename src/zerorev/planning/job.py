@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator
 from dataclasses import replace
 
 from zerorev.files.part import Part
@@ -14,7 +14,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.planning.hole import lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import likely_mistakes
-from zerorev.planning.sequence import Sequenced, sequenced, time_of
+from zerorev.planning.sequence import Sequenced, sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.workers import HERE, Machines, Workers, interrupts_held_back
 
@@ -57,7 +57,7 @@ def plan_job(
     written = [as_written(answer) for answer in found]
     sequence = sequenced(job, lambda: written, choose=strokes == "asked", machines=Machines(workers, scheduler))
     holes = tuple(sequence.changed.get(n, answer) for n, answer in enumerate(found))
-    whole = in_sequence(unanswered(job, strokes, holes), sequence, [hole.cycle_time for hole in holes])
+    whole = in_sequence(unanswered(job, strokes, holes), sequence)
     return replace(whole, findings=(*whole.findings, *tried.findings()))
 
 
@@ -67,16 +67,14 @@ def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> 
     return Plan(job.robot, job.tool, job.settings, holes, job.T_base_part, job.name, findings, strokes)
 
 
-def in_sequence(plan: Plan, sequence: Sequenced, times: Iterable[float | None]) -> Plan:
+def in_sequence(plan: Plan, sequence: Sequenced) -> Plan:
     """The plan with the order of its holes and the moves between them.
 
     Args:
         plan: of the same job.
         sequence: of its holes.
-        times: what each hole takes [s], or None.
     """
-    time = time_of(times, sequence.transitions)
-    return replace(plan, order=sequence.order, transitions=sequence.transitions, cycle_time=time)
+    return replace(plan, order=sequence.order, transitions=sequence.transitions, cycle_time=sequence.cycle_time)
 
 
 def answers(

@@ -329,14 +329,15 @@ def _improved(
             yield differ("branch", ours.branch, theirs.branch)
         return
     mine, other = order.rank(ours), order.rank(theirs)
+    least = other.cost
+    if chosen:
+        of_all_holes = settings.objective == "travel" and not settings.weights
+        least += np.inf if of_all_holes else settings.posture_freedom * abs(least)
     for path, stated, better in (
         ("reversals, weighted", mine.reversals, other.reversals),
         ("min_rate_deg_per_mm, below the threshold by", deg_per_mm(mine.lack).item(), deg_per_mm(other.lack).item()),
-        ("settings.objective, its cost", mine.cost, other.cost),
+        ("settings.objective, its cost", mine.cost, least),
     ):
-        if chosen and stated is mine.cost:
-            free = settings.objective == "travel" and not settings.weights
-            better += np.inf if free else settings.posture_freedom * abs(better)
         if better < stated - BETTER * abs(stated):
             yield f"{differ(path, stated, better)} by searching again"
         if abs(better - stated) > BETTER * abs(stated):

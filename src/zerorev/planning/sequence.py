@@ -82,11 +82,13 @@ class Sequenced:
         changed: answers with another motion than the best one, by the number of the hole.
         order: ids of the holes that have a motion, as they are drilled.
         transitions: the moves between them.
+        cycle_time: of holes and moves together [s]; None where no hole has a motion.
     """
 
     changed: dict[int, HolePlan]
     order: tuple[str, ...]
     transitions: tuple[Transition, ...]
+    cycle_time: float | None
 
 
 def sequenced(
@@ -108,9 +110,16 @@ def sequenced(
     """
     count = len(job.holes)
     choose = choose and count > 1 and job.settings.posture_freedom > 0
+    times: list[float | None] = []
+
+    def timed() -> Iterator[HolePlan]:
+        for answer in answers():
+            times.append(answer.cycle_time)
+            yield answer
+
     with Workers(partial(_offer, job.robot, job.tool, job.settings, choose), machines) as workers:
         offers: list[Offer] = []
-        for offer in workers.map(answers(), count):
+        for offer in workers.map(timed(), count):
             offers.append(offer)
             if progress:
                 progress(len(offers), count)
@@ -119,14 +128,14 @@ def sequenced(
         order, chosen = _chosen(job, offers)
         other = {n: member for n, member in chosen.items() if member is not offers[n][0] and n not in changed}
         failed = False
-        with Workers(partial(_answered, job.robot, job.tool, job.settings), machines) as workers:
+        with Workers(partial(_answered, job.robot, job.tool, job.settings), machines) as answerers:
             wanted = [(answer, other[n]) for n, answer in enumerate(answers()) if n in other] if other else []
-            for n, answer in zip(sorted(other), workers.map(wanted, len(wanted)), strict=True):
-                if answer is None:  # it does not pass its check, so it is not offered any more
+            for n, another in zip(sorted(other), answerers.map(wanted, len(wanted)), strict=True):
+                if another is None:  # it does not pass its check, so it is not offered any more
                     offers[n] = tuple(member for member in offers[n] if member is not other[n])
                     failed = True
                 else:
-                    changed[n] = replace(answer, hole=job.holes[n])
+                    changed[n] = replace(another, hole=job.holes[n])
         if not failed:
             break
         changed.clear()
@@ -137,7 +146,10 @@ def sequenced(
         else:
             member = chosen[n]
             places.append(_Place(job.holes[n].id, member.branch, member.start, member.joints[-1]))
-    return Sequenced(changed, tuple(job.holes[n].id for n in order), _transitions(job.robot, job.settings, places))
+    for n, final in changed.items():
+        times[n] = final.cycle_time
+    moves = _transitions(job.robot, job.settings, places)
+    return Sequenced(changed, tuple(job.holes[n].id for n in order), moves, time_of(times, moves))
 
 
 def moves_between(plan: Plan) -> tuple[Transition, ...]:
@@ -256,14 +268,14 @@ def _answered(robot: Robot, tool: Tool, settings: Settings, task: tuple[HolePlan
     """The answer of a hole that takes another member; None where that does not pass the check."""
     answer, member = task
     drilling = Drilling(robot, tool, answer.hole)
-    found = with_turns(drilling, settings, member.profile, member.branch, member.joints)
+    found = _with_turns(drilling, settings, member.profile, member.branch, member.joints)
     if found is None:
         return None
     again = with_another_motion(drilling, settings, answer, found)
     return again if again.verified is not None and again.verified.passed else None
 
 
-def with_turns(
+def _with_turns(
     drilling: Drilling, settings: Settings, profile: Profile, branch: int, joints: Array
 ) -> Candidate | None:
     """A motion with the turns of some joints [rad], shape (n, 6); None where the limits do not allow them."""
