@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
+import time
 from copy import deepcopy
 
 import pytest
@@ -63,6 +65,7 @@ def one_message(capsys, *parts):
 
 class TestPlan:
     def test_table(self, write_job, capsys):
+        began = time.monotonic()
         assert main(["plan", str(write_job())]) == cli.FINE
         out, err = capsys.readouterr()
         row = next(line for line in out.splitlines() if "P1" in line)
@@ -70,6 +73,10 @@ class TestPlan:
             assert part in row
         assert "no plan written" in out
         assert "error" not in err
+        assert "elapsed" not in out  # the answer is the same each time
+        seconds = re.fullmatch(r"note: elapsed time (\d+\.\d) s", err.splitlines()[-1])
+        assert seconds is not None
+        assert float(seconds[1]) <= time.monotonic() - began + 0.05
 
     def test_search(self, write_job, capsys):
         hole = {key: GIVEN[key] for key in ("id", "target_mm", "direction", "depth_mm")}

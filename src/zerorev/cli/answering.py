@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from contextlib import closing, nullcontext
 from dataclasses import replace
@@ -18,7 +19,7 @@ from zerorev.planning.job import answers, in_sequence, unanswered
 from zerorev.planning.sequence import sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words import terminal
-from zerorev.report.words.answer import Shown
+from zerorev.report.words.answer import Shown, minutes
 from zerorev.workers import Machines
 
 __all__ = ["run"]
@@ -44,6 +45,7 @@ def run(
         KeyboardInterrupt: the user stopped it; says what is kept.
         ZerorevError: as `answers` has it.
     """
+    began = time.monotonic()
     for note in job.notes:
         terminal.note(note)
     head = unanswered(job, strokes)
@@ -83,6 +85,8 @@ def run(
             terminal.say(f"figures written to {figures}")
         if output is None:
             terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
+        # beside the answer, which is the same each time
+        terminal.note(f"elapsed time {minutes(time.monotonic() - began)}")
     return shown.sound
 
 
