@@ -13,7 +13,7 @@ from oracles.holes import random_hole
 from zerorev.kernels import tour
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
-from zerorev.planning.sequence import moves_between
+from zerorev.planning.sequence import Member, _chosen, moves_between
 from zerorev.search.members import members
 from zerorev.search.optimum import best_motion
 
@@ -132,6 +132,16 @@ def test_one_posture_for_a_share_of_the_travel(planned, alone):
             assert one.verified.passed
     turned = [sum(np.abs(np.diff(move.joints, axis=0)).sum() for move in each.transitions) for each in (planned, alone)]
     assert turned[0] < turned[1] / 4
+
+
+def test_the_budget_counts_from_the_planned_motions(panel):
+    """Not from those of least travel: where another objective decides, the planned motion is not among them."""
+    joints = np.zeros((3, 6))
+    planned = Member(None, 0, joints, joints[0], travel=2.0)
+    shorter = Member(None, 4, joints, joints[0], travel=1.0)
+    few = replace(panel, holes=panel.holes[:2])
+    _, chosen = _chosen(few, [(planned, shorter), (planned,)])
+    assert chosen == {0: planned, 1: planned}  # one posture within the budget of 1.1 * 4, not of 1.1 * 3
 
 
 def test_the_moves_lead_from_hole_to_hole(planned):

@@ -309,7 +309,8 @@ def _chosen(job: Job, offers: Sequence[Offer]) -> tuple[list[int], dict[int, Mem
         change=CHANGE,
         home=home,
     )
-    least = sum(min(member.travel for member in offers[n]) for n in able)
+    # of the planned motions: where another objective decides, others may travel less
+    least = sum(offers[n][0].travel for n in able)
     budget = (1 + settings.posture_freedom) * least + ROUNDING
     order, block = _blocks(settings, [job.holes[n] for n in able])
     choice, weight = _within(asked, order, travel, budget)

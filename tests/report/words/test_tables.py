@@ -81,6 +81,17 @@ class TestFindings:
         assert len(lines) == 4
         assert "and likewise holes h3, h4, h5, h6, h7, h8 and 91 more" in lines[-1].plain
 
+    def test_a_hole_that_is_named_above_is_not_named_again(self):
+        said = [Finding("info", "lost_motion", f"crosses {n}", "A") for n in range(3)]
+        assert [line.plain.strip() for line in tables.finding_lines(said)][1:] == ["and 2 more like this"]
+        said.append(Finding("info", "lost_motion", "crosses", "B"))
+        last = tables.finding_lines(said)[-1].plain.strip()
+        assert last == "and likewise hole B and 2 more like this"
+
+    def test_what_is_said_of_no_hole_is_counted_too(self):
+        lines = tables.finding_lines([Finding("info", "long", f"part {n}") for n in range(3)])
+        assert lines[-1].plain.strip() == "and 2 more like this"
+
     def test_brackets_are_not_markup(self):
         (line,) = tables.finding_lines([Finding("error", "k", "[red]m[/red]", "[h]")])
         assert "hole [h]: [red]m[/red]" in shown(line)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -108,9 +108,19 @@ def finding_lines(findings: Iterable[Finding]) -> list[Text]:
         for message, holes in shown:
             where = f"{named_holes(holes)}: " if holes else ""
             lines.append(Text.assemble((f"{level:<8}", LEVELS[level]), (f"{kind:<{width}}", "bold"), where, message))
-        if rest := [hole for _, holes in list(messages.items())[len(shown) :] for hole in holes]:
-            lines.append(Text.assemble(" " * (8 + width), (f"and likewise {named_holes(rest)}", "dim")))
+        if rest := list(messages.items())[len(shown) :]:
+            lines.append(Text.assemble(" " * (8 + width), (_likewise(shown, rest), "dim")))
     return lines
+
+
+def _likewise(shown: Sequence[tuple[str, list[str]]], rest: Sequence[tuple[str, list[str]]]) -> str:
+    """Of which other holes the same kind of finding is said; what more is said of the holes above is counted."""
+    above = {hole for _, holes in shown for hole in holes}
+    others = [hole for _, holes in rest for hole in holes if hole not in above]
+    more = sum(above.issuperset(holes) for _, holes in rest)
+    parts = [f"likewise {named_holes(others)}"] if others else []
+    parts += [f"{more:,} more like {'this' if len(shown) == 1 else 'these'}"] if more else []
+    return f"and {' and '.join(parts)}"
 
 
 def hole_findings(hole: HolePlan) -> list[Finding]:
