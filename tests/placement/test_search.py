@@ -24,7 +24,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.placement.freedom import AXES, Freedom, frame_at, job_at
 from zerorev.placement.search import KEPT, place, placements
-from zerorev.report.words.placement import placement_data
+from zerorev.report.words.placement import placement_data, placement_lines
 from zerorev.search.deepest import Deepest, deepest_stroke
 from zerorev.workers import Machines
 
@@ -72,6 +72,17 @@ class TestFreedom:
         assert len({tuple(place) for place in places}) == 25
         np.testing.assert_allclose(places[0], [0.1, 0, 0, 0.5], atol=1e-5)
         assert {tuple(place[[0, 3]]) for place in places} >= set(product((-0.1, 0.3), (0.0, 1.0)))
+
+    def test_ends_and_what_widens_them(self):
+        freedom = Freedom(x=(-0.1, 0.3), y=(0.2, 0.2), turn=(-1.0, 1.0))
+        assert freedom.ends_at(np.array([0.3, 0.2, 0.0, -1.0])) == [(0, 1), (3, 0)]
+        assert freedom.ends_at(np.array([0.298, 0.2, 0.0, 0.99])) == []
+        assert freedom.widened(0, 1) == pytest.approx((-0.1, 0.7))
+        assert freedom.widened(0, 0) == pytest.approx((-0.5, 0.3))
+        assert freedom.widened(3, 0) == pytest.approx((-3.0, 1.0))
+        wide = Freedom(turn=(-2.0, 2.0)).widened(3, 1)
+        assert wide == pytest.approx((-2.0, 2 * np.pi - 2.0))
+        assert Freedom(turn=wide).ends_at(np.array([0, 0, 0, wide[1]])) == []  # a full turn ends nowhere
 
     def test_no_freedom_is_one_place(self):
         np.testing.assert_array_equal(Freedom(y=(0.2, 0.2)).grid(7), [[0, 0.2, 0, 0]])
@@ -178,6 +189,28 @@ class TestPlanted:
         margins = [each.least for each in known]
         assert margins == sorted(margins)
         assert [each.finished for each in known] == [False] * (len(known) - 1) + [True]
+
+    def test_a_best_place_at_an_end_says_which_range_to_widen(self, robot, tool, planted):
+        job = pattern(robot, tool)
+        ridge = job.holes[0].target[2] + 0.15
+        planted(lambda hole: 0.2 - abs(hole.target[2] - ridge) if hole.id == "H0" else 0.25)
+
+        def said(freedom):
+            found = place(job, freedom, grid=4)
+            return found, [line.plain for line in placement_lines(job, freedom, found) if "widen" in line.plain]
+
+        narrow, (words,) = said(Freedom((-0.02, 0.02), z=(-0.05, 0.1)))
+        assert "at the stop of --z-mm, and" in words
+        assert placement_data(job, Freedom(z=(-0.05, 0.1)), narrow)["best"]["at_end_of"] == {"z_mm": "stop"}
+        low, high = (float(end) / 1e3 for end in words.rpartition("--z-mm=")[2].split(":"))
+        wide, none = said(Freedom((-0.02, 0.02), z=(low, high)))
+        assert none == []
+        assert wide.place[2] == pytest.approx(0.15, abs=5e-4)
+        assert wide.least > narrow.least + 0.04
+
+    def test_nothing_to_vary_is_refused(self, robot, tool):
+        with pytest.raises(InputError, match=r"nothing may be varied.*START:STOP"):
+            place(pattern(robot, tool), Freedom(x=(0.1, 0.1)))
 
     @pytest.mark.parametrize("wrong", [{"grid": 1}, {"cells": 1}, {"cells": -1}])
     def test_no_grid(self, robot, tool, wrong):
@@ -303,7 +336,7 @@ class TestCommand:
     @pytest.mark.parametrize(
         "wrong",
         ["--x-mm=5:1", "--y-mm=a:b", "--z-mm=0:nan", "--turn-deg=0:400", "--x-mm=1:2:3", "--x-mm=", "--grid=1",
-         "--cells=-2", "--workers=0"],
+         "--cells=-2", "--workers=0", "--x-mm=50", "--z-mm=0:0"],
     )  # fmt: skip
     def test_freedom_that_is_none_is_one_message(self, job_file, tmp_path, capsys, wrong):
         asked = ["place", str(job_file()), wrong, "-o", str(tmp_path / "place.json")]

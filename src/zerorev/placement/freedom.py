@@ -12,10 +12,11 @@ from zerorev.model._arrays import Array, finite
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.job import Job
 
-__all__ = ["AXES", "Freedom", "frame_at", "job_at"]
+__all__ = ["AXES", "CLOSE", "Freedom", "frame_at", "job_at"]
 
 AXES = ("x", "y", "z", "turn")
 FINEST = np.array([1e-5, 1e-5, 1e-5, np.deg2rad(1e-3)])  # what a place is rounded to: 0.01 mm, 0.001 deg
+CLOSE = 10 * FINEST  # no nearer is an end closed in on
 
 Range = tuple[float, float]
 
@@ -62,6 +63,22 @@ class Freedom:
     def granted(self) -> list[int]:
         """The axes of `AXES` along which there is any freedom."""
         return np.flatnonzero(self.upper > self.lower).tolist()
+
+    def ends_at(self, place: Array) -> list[tuple[int, int]]:
+        """The granted axes at whose end a place lies, each with 0 (start) or 1 (stop); a full turn has no end."""
+        full = self.turn[1] - self.turn[0] > 2 * np.pi - 1e-9
+        return [
+            (axis, side)
+            for axis in self.granted
+            for side, end in enumerate((self.lower[axis], self.upper[axis]))
+            if abs(place[axis] - end) <= CLOSE[axis] and not (full and AXES[axis] == "turn")
+        ]
+
+    def widened(self, axis: int, side: int) -> Range:
+        """The range of an axis, made as wide again at its start (0) or stop (1); a turn no more than a full one."""
+        low, high = float(self.lower[axis]), float(self.upper[axis])
+        more = min(high - low, 2 * np.pi - (high - low)) if AXES[axis] == "turn" else high - low
+        return (low - more, high) if side == 0 else (low, high + more)
 
     def values(self, axis: int, count: int) -> Array:
         """Evenly spread over one axis [m or rad], ends included, rounded; a single one where there is no freedom."""

@@ -16,7 +16,7 @@ from zerorev.model._arrays import Array
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Margins, least
 
-__all__ = ["END", "improved"]
+__all__ = ["END", "GAIN", "improved"]
 
 END = np.array([2.5e-4, 2.5e-4, 2.5e-4, np.deg2rad(0.025)])  # steps below which it is at its end [m, rad]
 ACTIVE = 12  # holes, the worst, whose slopes are measured

@@ -9,13 +9,12 @@ from itertools import combinations
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.placement.freedom import AXES, FINEST, Freedom
+from zerorev.placement.freedom import AXES, CLOSE, Freedom
 from zerorev.placement.margins import Margins, least
 
 __all__ = ["Slice", "room", "slices"]
 
 STRIDES = 16  # of the freedom along an axis, at which holes are examined on the way out
-CLOSE = 10 * FINEST  # to which the end of the room is closed in on
 TOO_SHALLOW = float(np.nextafter(0.0, -1.0))  # the greatest margin that is none
 
 Progress = Callable[[str, int, int], None]

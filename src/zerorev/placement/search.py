@@ -16,7 +16,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.job import Job
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Asked, Margins, least
-from zerorev.placement.refine import improved
+from zerorev.placement.refine import END, GAIN, improved
 from zerorev.placement.room import Slice, room, slices
 from zerorev.workers import HERE, Machines, Workers
 
@@ -24,6 +24,7 @@ __all__ = ["Placement", "place", "placements"]
 
 KEPT = 8  # the best places of the grid, known in full
 STARTS = 3  # those of them from which it goes on
+INWARD = 4  # final steps of the search, from an end of a range, within which the least margin has to fall
 BATCH = 32  # places that are asked about with the same bar to clear
 
 Progress = Callable[[str, int, int], None]
@@ -42,6 +43,8 @@ class Placement:
         found: least margin of its places [m], shape (X, Y, Z, T); NaN: no better than others, so not known in full.
         room: how far the part may be moved from the best place along each axis, the others as they are, before some
             hole is too shallow [m or rad], shape (4, 2), 0 or less and 0 or more; None: not examined, or too shallow.
+        pressed: the axes, with 0 (start) or 1 (stop), at whose end the best place lies because the least margin rises
+            towards it: a better place may lie beyond.
         slices: the least margin over the granted axes, two at a time, through the best place.
         strokes: how many deepest strokes were found.
         finished: whether nothing is left to be examined.
@@ -53,6 +56,7 @@ class Placement:
     grid: tuple[Array, ...]
     found: Array
     room: Array | None = None
+    pressed: tuple[tuple[int, int], ...] = ()
     slices: tuple[Slice, ...] = ()
     strokes: int = 0
     finished: bool = False
@@ -88,7 +92,7 @@ def place(
         progress: called with what is done, how much of it is done, how much it is in all.
 
     Raises:
-        InputError: a grid of fewer than two places, a hole with a given motion.
+        InputError: a grid of fewer than two places, a hole with a given motion, nothing that may be varied.
     """
     *_, last = placements(job, freedom, grid=grid, cells=cells, machines=machines, progress=progress)
     return last
@@ -107,7 +111,7 @@ def placements(
 
     Args and errors are those of `place`.
     """
-    _check(job, grid, cells)
+    _check(job, freedom, grid, cells)
     tell = progress or (lambda what, done, total: None)
     with Workers(Asked(job), machines) as processes:
         margins = Margins(job, processes)
@@ -117,6 +121,7 @@ def placements(
         for better in _refined(known, best, margins, freedom, tell):
             known = better
             yield known
+        known = replace(known, pressed=_pressed(margins, freedom, known))
         if known.least >= 0:
             known = replace(known, room=room(margins, freedom, known.place, tell), strokes=margins.strokes)
             yield known
@@ -126,7 +131,7 @@ def placements(
         yield replace(known, finished=True)
 
 
-def _check(job: Job, grid: int, cells: int) -> None:
+def _check(job: Job, freedom: Freedom, grid: int, cells: int) -> None:
     if grid < 2:
         raise InputError(f"{grid} places", where="grid", accepted="2 or more along each axis")
     if cells and cells < 2:
@@ -138,6 +143,12 @@ def _check(job: Job, grid: int, cells: int) -> None:
                 where=f"hole {hole.id}",
                 accepted="holes without psi_deg",
             )
+    if not freedom.granted:
+        raise InputError(
+            "nothing may be varied: each range is a single place",
+            where="--x-mm, --y-mm, --z-mm, --turn-deg",
+            accepted="START:STOP of one of them at least, e.g. --z-mm=-100:100",
+        )
 
 
 def _coarse(margins: Margins, freedom: Freedom, grid: int, tell: Progress) -> Iterator[_Known]:
@@ -163,6 +174,16 @@ def _coarse(margins: Margins, freedom: Freedom, grid: int, tell: Progress) -> It
         known = replace(known, found=found.copy(), strokes=margins.strokes)
         yield known, [(places[n], seen) for _, n, seen in best]
     tell("coarse grid", len(places), len(places))
+
+
+def _pressed(margins: Margins, freedom: Freedom, known: Placement) -> tuple[tuple[int, int], ...]:
+    """The ends at which the best place lies and away from which the least margin falls."""
+    ends = freedom.ends_at(known.place)
+    inward = np.repeat(known.place[None], len(ends), axis=0)
+    for row, (axis, side) in zip(inward, ends, strict=True):
+        row[axis] += (1 - 2 * side) * INWARD * END[axis]
+    seen = margins(freedom.rounded(inward)) if ends else ()
+    return tuple(end for end, there in zip(ends, seen, strict=True) if least(there) < known.least - GAIN)
 
 
 def _refined(

@@ -25,6 +25,7 @@ __all__ = [
 ]  # fmt: skip
 
 ROWS = 60
+ENDS = ("start", "stop")
 NAMES = {"x": "x_mm", "y": "y_mm", "z": "z_mm", "turn": "turn_deg"}
 
 
@@ -49,6 +50,7 @@ def placement_data(job: Job, freedom: Freedom, found: Placement) -> dict[str, An
         "least_margin_mm": mm(found.least),
         "worst_hole": job.holes[found.worst].id,
         "room": None if found.room is None else _room(found.room),
+        "at_end_of": {NAMES[AXES[axis]]: ENDS[side] for axis, side in found.pressed},
     }
     holes = zip(job.holes, found.margins, found.as_it_stands, strict=True)
     data = {
@@ -126,7 +128,8 @@ def placement_lines(job: Job, freedom: Freedom, found: Placement) -> list[Text]:
     worst = job.holes[found.worst].id
     if found.least < 0:
         short = f"no place that was examined drills every hole; at the nearest, {words}, hole {worst} is"
-        return [*lines, Text(f"{short} {-margin:.1f} mm too shallow ({_drillable(found.margins)})", style="yellow")]
+        lines.append(Text(f"{short} {-margin:.1f} mm too shallow ({_drillable(found.margins)})", style="yellow"))
+        return [*lines, *_end_lines(freedom, found)]
     lines.append(Text(f"best place: {words}; least margin {margin:+.1f} mm, hole {worst}", style="green"))
     frame = frame_text(frame_at(job.T_base_part, found.place))
     lines.append(Text(f"part_frame: {{xyz_mm: {frame['xyz_mm']}, rpy_deg: {frame['rpy_deg']}}}"))
@@ -140,6 +143,17 @@ def placement_lines(job: Job, freedom: Freedom, found: Placement) -> list[Text]:
         ]
         if ways:
             lines.append(Text(f"room from there, one axis at a time: {'; '.join(ways)}"))
+    return [*lines, *_end_lines(freedom, found)]
+
+
+def _end_lines(freedom: Freedom, found: Placement) -> list[Text]:
+    """Where the ranges may be too narrow, and how to widen them."""
+    lines = []
+    for axis, side in found.pressed:
+        option = f"--{NAMES[AXES[axis]].replace('_', '-')}"
+        low, high = in_unit(AXES[axis], np.array(freedom.widened(axis, side)))
+        where = f"that place lies at the {ENDS[side]} of {option}, and a better one may lie beyond"
+        lines.append(Text(f"{where}: widen it, e.g. {option}={low:.6g}:{high:.6g}", style="yellow"))
     return lines
 
 
