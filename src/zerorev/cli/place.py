@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, machines, need
 from zerorev.errors import InputError
@@ -14,13 +14,15 @@ from zerorev.report.words import terminal
 from zerorev.workers import Machines
 
 if TYPE_CHECKING:
+    from zerorev.model._arrays import Array
     from zerorev.model.job import Job
     from zerorev.placement.freedom import Freedom
     from zerorev.placement.search import Placement
 
 __all__ = ["place"]
 
-EACH = {"coarse grid": "place", "refining": "step", "room": "round", "map": "place"}
+EACH = {"coarse grid": "place", "refining": "step", "room": "round", "enough": "place", "nearest": "start",
+        "most room": "round", "map": "place"}  # fmt: skip
 
 
 @app.command
@@ -32,6 +34,7 @@ def place(
     y_mm: str = "0",
     z_mm: str = "0",
     turn_deg: str = "0",
+    enough_mm: float | None = None,
     grid: Whole = 7,
     cells: Whole = 13,
     output: Output = None,
@@ -53,10 +56,13 @@ def place(
         y_mm: Likewise along Y.
         z_mm: Likewise along Z.
         turn_deg: Turn about the vertical through the part frame's origin, START:STOP, counter-clockwise from above.
+        enough_mm: Find besides, of all places whose least margin is so much or more [mm], the nearest to where the part
+            stands, and the one with most room around it; the job is then written with the nearest.
         grid: Places of the coarse grid along each axis that has any freedom.
         cells: Of the map along each axis; 0 for none. It is made where it is written or drawn.
         output: Where to write the answer (JSON). Without it the answer is only shown.
-        write_job: Where to write the job with its part at the best place (YAML), if every hole is drilled there.
+        write_job: Where to write the job with its part at the best place (YAML), if every hole is drilled there; with
+            --enough-mm at the nearest place that has enough.
         figures: Folder for the picture of the map (PNG); it is made if its parent exists.
         workers: Processes to run it on; by default all cores where there is much to do. The answer is the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
@@ -80,7 +86,10 @@ def place(
     x, y, z = ((low / 1e3, high / 1e3) for low, high in ends[:3])
     freedom = Freedom(x, y, z, (math.radians(ends[3][0]), math.radians(ends[3][1])))
     where = machines(workers, scheduler)
-    found, stopped = _searched(wanted, freedom, grid, cells if output or figures or json else 0, where)
+    enough = None if enough_mm is None else enough_mm / 1e3
+    shapes = Shapes(grid, cells if output or figures or json else 0, enough)
+    found, stopped = _searched(wanted, freedom, shapes, where)
+    to_write = _to_write(found, enough)
     data = shown.placement_data(wanted, freedom, found)
     written = []
     if output is not None:
@@ -88,8 +97,8 @@ def place(
         written.append(f"answer written to {output}")
     if figures is not None and found.slices:
         written.append(_drawn(wanted, found, figures))
-    if write_job is not None and found.least >= 0:
-        written.append(_job_written(wanted, found, write_job, job))
+    if write_job is not None and to_write is not None:
+        written.append(_job_written(wanted, to_write, write_job, job))
     if json:
         terminal.print_json(data)
     else:
@@ -97,21 +106,37 @@ def place(
         terminal.print_lines(shown.placement_lines(wanted, freedom, found))
         for line in written:
             terminal.say(line)
-    if write_job is not None and found.least < 0:
-        terminal.note("no job written: no place that was examined drills every hole")
+    if write_job is not None and to_write is None:
+        why = "drills every hole" if enough_mm is None else f"has a margin of {enough_mm:g} mm"
+        terminal.note(f"no job written: no place that was examined {why}")
     if stopped:
         raise KeyboardInterrupt(f"interrupted; the best place so far is {'written' if output else 'shown'}")
-    return FINE if found.least >= 0 else FOUND
+    return FINE if to_write is not None else FOUND
 
 
-def _searched(job: Job, freedom: Freedom, grid: int, cells: int, machines: Machines) -> tuple[Placement, bool]:
+class Shapes(NamedTuple):
+    """How fine the search is, and what it looks for besides the best place."""
+
+    grid: int
+    cells: int
+    enough: float | None
+
+
+def _to_write(found: Placement, enough: float | None) -> Array | None:
+    """Where the part of a job that is written stands; None: no place is good enough."""
+    if enough is not None:
+        return None if found.nearest is None else found.nearest.place
+    return found.place if found.least >= 0 else None
+
+
+def _searched(job: Job, freedom: Freedom, shapes: Shapes, machines: Machines) -> tuple[Placement, bool]:
     """The best place, and whether Ctrl-C stopped the search for a better one."""
     from zerorev.placement.search import placements
 
     known: Placement | None = None
     try:
         with _phases() as progress:
-            for better in placements(job, freedom, grid=grid, cells=cells, machines=machines, progress=progress):
+            for better in placements(job, freedom, machines=machines, progress=progress, **shapes._asdict()):
                 known = better
     except KeyboardInterrupt:
         if known is None:
@@ -131,13 +156,13 @@ def _drawn(job: Job, found: Placement, folder: Path) -> str:
     return f"figure written to {folder}"
 
 
-def _job_written(job: Job, found: Placement, target: Path, source: Path) -> str:
+def _job_written(job: Job, place: Array, target: Path, source: Path) -> str:
     from zerorev.files.moved_job import write_job
     from zerorev.placement.freedom import frame_at
     from zerorev.report.words.placement import place_words
 
-    note = f"{source.name} with its part moved by zerorev place: {place_words(found.place)}"
-    write_job(target, source, T_base_part=frame_at(job.T_base_part, found.place), note=note)
+    note = f"{source.name} with its part moved by zerorev place: {place_words(place)}"
+    write_job(target, source, T_base_part=frame_at(job.T_base_part, place), note=note)
     return f"job written to {target}"
 
 

@@ -16,7 +16,9 @@ from zerorev.model._arrays import Array
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Margins, least
 
-__all__ = ["END", "GAIN", "improved"]
+__all__ = [
+    "ACTIVE", "CREEP", "END", "GAIN", "LEVER", "MOST_ROUNDS", "REACH", "SHRINK", "box", "improved", "slopes_about",
+]  # fmt: skip
 
 END = np.array([2.5e-4, 2.5e-4, 2.5e-4, np.deg2rad(0.025)])  # steps below which it is at its end [m, rad]
 ACTIVE = 12  # holes, the worst, whose slopes are measured
@@ -47,13 +49,9 @@ def improved(
         if not axes or (step <= END)[axes].all():
             break
         active = np.argsort(known, kind="stable")[:ACTIVE].tolist()
-        probes = np.repeat(place[None], 2 * len(axes), axis=0)
-        for n, axis in enumerate(axes):
-            probes[2 * n : 2 * n + 2, axis] += [-step[axis], step[axis]]
-        probes = freedom.rounded(probes)
-        seen = np.array(list(margins(probes, holes=active)))[:, active]
+        probes, seen, slopes = slopes_about(margins, freedom, place, step, active)
         tried = [
-            *_predicted(freedom, axes, place, step, known[active], probes, seen),
+            *_predicted(freedom, axes, place, step, known[active], slopes),
             probes[seen.min(axis=1).argmax()],
         ]
         worst = least(known)
@@ -66,20 +64,50 @@ def improved(
     return place, known
 
 
-def _predicted(
-    freedom: Freedom, axes: list[int], place: Array, step: Array, known: Array, probes: Array, seen: Array
-) -> list[Array]:
-    """Where the least margin should be greatest, by the slopes between the probes, in boxes of each reach."""
-    slopes = np.zeros((known.size, len(axes)))  # of each hole, per step
+def slopes_about(
+    margins: Margins, freedom: Freedom, place: Array, step: Array, active: list[int]
+) -> tuple[Array, Array, Array]:
+    """A step to both sides of a place along each granted axis.
+
+    Args:
+        margins: asks about places.
+        freedom: that it stays in.
+        place: shape (4,).
+        step: along each axis, shape (4,).
+        active: the holes to examine, by their index.
+
+    Returns:
+        the places, shape (2 A, 4); the margins there [m], shape (2 A, K); the slopes of the margins [m per step], shape
+        (K, A), of K active holes over A granted axes.
+    """
+    axes = freedom.granted
+    probes = np.repeat(place[None], 2 * len(axes), axis=0)
+    for n, axis in enumerate(axes):
+        probes[2 * n : 2 * n + 2, axis] += [-step[axis], step[axis]]
+    probes = freedom.rounded(probes)
+    seen = np.array(list(margins(probes, holes=active)))[:, active]
+    slopes = np.zeros((len(active), len(axes)))
     for n, axis in enumerate(axes):
         below, above = (probes[2 * n + side, axis] - place[axis] for side in (0, 1))
         if above - below > 0:
             slopes[:, n] = (seen[2 * n + 1] - seen[2 * n]) / (above - below) * step[axis]
+    return probes, seen, slopes
+
+
+def box(freedom: Freedom, place: Array, step: Array, reach: float) -> tuple[Array, Array]:
+    """How far one may go from a place along the granted axes, in steps: least and greatest, shape (A,) each."""
+    axes = freedom.granted
+    low = np.maximum(-reach, (freedom.lower - place)[axes] / step[axes])
+    return low, np.minimum(reach, (freedom.upper - place)[axes] / step[axes])
+
+
+def _predicted(
+    freedom: Freedom, axes: list[int], place: Array, step: Array, known: Array, slopes: Array
+) -> list[Array]:
+    """Where the least margin should be greatest, by the slopes, in boxes of each reach."""
     places = []
     for reach in REACH:
-        low = np.maximum(-reach, (freedom.lower - place)[axes] / step[axes])
-        high = np.minimum(reach, (freedom.upper - place)[axes] / step[axes])
-        bounds = [*zip(low, high, strict=True), (None, None)]
+        bounds = [*zip(*box(freedom, place, step, reach), strict=True), (None, None)]
         rows = np.column_stack([-slopes, np.ones(known.size)])  # t - slope . move <= margin; the greatest t
         answer = linprog([*np.zeros(len(axes)), -1.0], A_ub=rows, b_ub=known, bounds=bounds, method="highs")
         if answer.success:

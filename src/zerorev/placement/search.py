@@ -14,6 +14,8 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.job import Job
+from zerorev.placement.distance import Distance
+from zerorev.placement.enough import Sufficient, nearest, roomiest, sufficient
 from zerorev.placement.freedom import Freedom
 from zerorev.placement.margins import Asked, Margins, least
 from zerorev.placement.refine import END, GAIN, improved
@@ -46,6 +48,9 @@ class Placement:
         pressed: the axes, with 0 (start) or 1 (stop), at whose end the best place lies because the least margin rises
             towards it: a better place may lie beyond.
         slices: the least margin over the granted axes, two at a time, through the best place.
+        enough: the margin [m] that was asked for; None: none was.
+        nearest: the nearest place to where the part stands with that margin; None: not asked for, or none was found.
+        roomiest: the place with most room around it that has that margin; likewise.
         strokes: how many deepest strokes were found.
         finished: whether nothing is left to be examined.
     """
@@ -58,6 +63,9 @@ class Placement:
     room: Array | None = None
     pressed: tuple[tuple[int, int], ...] = ()
     slices: tuple[Slice, ...] = ()
+    enough: float | None = None
+    nearest: Sufficient | None = None
+    roomiest: Sufficient | None = None
     strokes: int = 0
     finished: bool = False
 
@@ -78,6 +86,7 @@ def place(
     *,
     grid: int = 7,
     cells: int = 0,
+    enough: float | None = None,
     machines: Machines = HERE,
     progress: Progress | None = None,
 ) -> Placement:
@@ -88,13 +97,15 @@ def place(
         freedom: how far it may be moved.
         grid: places of the coarse grid along each granted axis; what is narrower than its meshes may be overlooked.
         cells: of each slice, along each axis; 0: no slices.
+        enough: margin [m] with which the nearest place and the one with most room are sought; None: they are not.
         machines: to run it on; the answer is the same.
         progress: called with what is done, how much of it is done, how much it is in all.
 
     Raises:
-        InputError: a grid of fewer than two places, a hole with a given motion, nothing that may be varied.
+        InputError: a grid of fewer than two places, a hole with a given motion, nothing that may be varied, a margin
+            below 0.
     """
-    *_, last = placements(job, freedom, grid=grid, cells=cells, machines=machines, progress=progress)
+    *_, last = placements(job, freedom, grid=grid, cells=cells, enough=enough, machines=machines, progress=progress)
     return last
 
 
@@ -104,6 +115,7 @@ def placements(
     *,
     grid: int = 7,
     cells: int = 0,
+    enough: float | None = None,
     machines: Machines = HERE,
     progress: Progress | None = None,
 ) -> Iterator[Placement]:
@@ -111,7 +123,7 @@ def placements(
 
     Args and errors are those of `place`.
     """
-    _check(job, freedom, grid, cells)
+    _check(job, freedom, grid, cells, enough)
     tell = progress or (lambda what, done, total: None)
     with Workers(Asked(job), machines) as processes:
         margins = Margins(job, processes)
@@ -125,17 +137,22 @@ def placements(
         if known.least >= 0:
             known = replace(known, room=room(margins, freedom, known.place, tell), strokes=margins.strokes)
             yield known
+        for asked in _enough(known, job, margins, freedom, enough, tell) if enough is not None else ():
+            known = asked
+            yield known
         for shown in slices(margins, freedom, known.place, cells, tell) if cells else ():
             known = replace(known, slices=(*known.slices, shown), strokes=margins.strokes)
             yield known
         yield replace(known, finished=True)
 
 
-def _check(job: Job, freedom: Freedom, grid: int, cells: int) -> None:
+def _check(job: Job, freedom: Freedom, grid: int, cells: int, enough: float | None) -> None:
     if grid < 2:
         raise InputError(f"{grid} places", where="grid", accepted="2 or more along each axis")
     if cells and cells < 2:
         raise InputError(f"{cells} cells", where="cells", accepted="2 or more along each axis, or 0 for none")
+    if enough is not None and not 0 <= enough < np.inf:
+        raise InputError(f"{enough * 1e3:g} mm", where="--enough-mm", accepted="0 or more [mm]")
     for hole in job.holes:
         if hole.profile is not None:
             raise InputError(
@@ -190,7 +207,7 @@ def _refined(
     known: Placement, best: Sequence[tuple[Array, Array]], margins: Margins, freedom: Freedom, tell: Progress
 ) -> Iterator[Placement]:
     """From the best places of the grid that are not neighbours of each other to the best near each."""
-    mesh = np.array([axis[1] - axis[0] if axis.size > 1 else 1.0 for axis in known.grid])
+    mesh = _mesh(known)
     starts: list[tuple[Array, Array]] = []
     for there, seen in best or [(known.place, known.margins)]:
         if len(starts) < STARTS and not any((np.abs(there - other) < 1.5 * mesh).all() for other, _ in starts):
@@ -208,3 +225,26 @@ def _refined(
         known = replace(known, strokes=margins.strokes)
         yield known
     tell("refining", total, total)
+
+
+def _enough(
+    known: Placement, job: Job, margins: Margins, freedom: Freedom, enough: float, tell: Progress
+) -> Iterator[Placement]:
+    """What is known, with the places that have enough margin."""
+    distance, grid = Distance(job), freedom.grid(max(axis.size for axis in known.grid))
+    places = np.vstack([freedom.rounded(np.zeros(4)), known.place, grid])
+    places = places[np.sort(np.unique(places, axis=0, return_index=True)[1])]
+    known = replace(known, enough=enough)
+    good, bad = sufficient(margins, distance, places, enough, tell)
+    if good:
+        found = nearest(margins, freedom, distance, enough, good, _mesh(known), tell)
+        known = replace(known, nearest=found, strokes=margins.strokes)
+        yield known
+        found = roomiest(margins, freedom, distance, enough, good, bad, _mesh(known), tell)
+        known = replace(known, roomiest=found)
+    yield replace(known, strokes=margins.strokes)
+
+
+def _mesh(known: Placement) -> Array:
+    """Of the grid along each axis [m or rad], shape (4,); 1 where it has one place."""
+    return np.array([axis[1] - axis[0] if axis.size > 1 else 1.0 for axis in known.grid])

@@ -42,13 +42,7 @@ def robot_instead(T_base_part: Array, place: Array) -> Array:
 def placement_data(job: Job, freedom: Freedom, found: Placement) -> dict[str, Any]:
     """The answer as plain data, in the form of a placement file (docs/howto/place_a_part.md)."""
     granted = {NAMES[axis]: in_unit(axis, np.array(getattr(freedom, axis))) for axis in AXES}
-    best = {
-        "shift_mm": mm(found.place[:3]),
-        "turn_deg": deg(found.place[3]),
-        "part_frame": frame_text(frame_at(job.T_base_part, found.place)),
-        "robot_instead": frame_text(robot_instead(job.T_base_part, found.place)),
-        "least_margin_mm": mm(found.least),
-        "worst_hole": job.holes[found.worst].id,
+    best = _place_data(job, found.place, found.margins) | {
         "room": None if found.room is None else _room(found.room),
         "at_end_of": {NAMES[AXES[axis]]: ENDS[side] for axis, side in found.pressed},
     }
@@ -64,6 +58,7 @@ def placement_data(job: Job, freedom: Freedom, found: Placement) -> dict[str, An
         "freedom": granted,
         "drillable": found.least >= 0,
         "best": best,
+        "enough": None if found.enough is None else _enough_data(job, found, found.enough),
         "as_it_stands": {"least_margin_mm": mm(found.as_it_stands.min())},
         "holes": [
             {
@@ -84,6 +79,28 @@ def placement_data(job: Job, freedom: Freedom, found: Placement) -> dict[str, An
         "strokes": found.strokes,
     }
     return dict(plain(data))
+
+
+def _place_data(job: Job, place: Array, margins: Array) -> dict[str, Any]:
+    return {
+        "shift_mm": mm(place[:3]),
+        "turn_deg": deg(place[3]),
+        "part_frame": frame_text(frame_at(job.T_base_part, place)),
+        "robot_instead": frame_text(robot_instead(job.T_base_part, place)),
+        "least_margin_mm": mm(margins.min()),
+        "worst_hole": job.holes[int(margins.argmin())].id,
+    }
+
+
+def _enough_data(job: Job, found: Placement, enough: float) -> dict[str, Any]:
+    data: dict[str, Any] = {"margin_mm": mm(enough), "nearest": None, "most_room": None}
+    for key, each in (("nearest", found.nearest), ("most_room", found.roomiest)):
+        if each is not None:
+            data[key] = _place_data(job, each.place, each.margins) | {"distance_mm": mm(each.distance)}
+    if found.roomiest is not None and found.roomiest.room is not None:
+        room = found.roomiest.room
+        data["most_room"]["room_mm"] = mm(room) if np.isfinite(room) else None
+    return data
 
 
 def _room(room: Array) -> dict[str, Array]:
@@ -127,12 +144,11 @@ def placement_lines(job: Job, freedom: Freedom, found: Placement) -> list[Text]:
     margin, words = float(mm(found.least)), place_words(found.place)
     worst = job.holes[found.worst].id
     if found.least < 0:
-        short = f"no place that was examined drills every hole; at the nearest, {words}, hole {worst} is"
+        short = f"no place that was examined drills every hole; at the best of them, {words}, hole {worst} is"
         lines.append(Text(f"{short} {-margin:.1f} mm too shallow ({_drillable(found.margins)})", style="yellow"))
-        return [*lines, *_end_lines(freedom, found)]
+        return [*lines, *_end_lines(freedom, found), *_enough_lines(job, found)]
     lines.append(Text(f"best place: {words}; least margin {margin:+.1f} mm, hole {worst}", style="green"))
-    frame = frame_text(frame_at(job.T_base_part, found.place))
-    lines.append(Text(f"part_frame: {{xyz_mm: {frame['xyz_mm']}, rpy_deg: {frame['rpy_deg']}}}"))
+    lines.append(_frame_line(job, found.place))
     robot = frame_text(robot_instead(job.T_base_part, found.place))
     lines.append(Text(f"or move the robot's base instead: xyz_mm {robot['xyz_mm']}, turn {robot['rpy_deg'][2]:g} deg"))
     if found.room is not None:
@@ -143,7 +159,36 @@ def placement_lines(job: Job, freedom: Freedom, found: Placement) -> list[Text]:
         ]
         if ways:
             lines.append(Text(f"room from there, one axis at a time: {'; '.join(ways)}"))
-    return [*lines, *_end_lines(freedom, found)]
+    return [*lines, *_end_lines(freedom, found), *_enough_lines(job, found)]
+
+
+def _frame_line(job: Job, place: Array) -> Text:
+    frame = frame_text(frame_at(job.T_base_part, place))
+    return Text(f"part_frame: {{xyz_mm: {frame['xyz_mm']}, rpy_deg: {frame['rpy_deg']}}}")
+
+
+def _enough_lines(job: Job, found: Placement) -> list[Text]:
+    """The nearest place with enough margin, and the one with most room around it."""
+    if found.enough is None:
+        return []
+    wanted = f"{float(mm(found.enough)):g} mm margin or more"
+    if found.nearest is None:
+        return [Text(f"no place that was examined has {wanted}", style="yellow")] if found.finished else []
+    lines = []
+    for what, each in (("nearest place", found.nearest), ("place with most room", found.roomiest)):
+        if each is None:
+            continue
+        margin, worst = float(mm(each.margins.min())), job.holes[int(each.margins.argmin())].id
+        where = f"{place_words(each.place)}; least margin {margin:+.1f} mm, hole {worst}"
+        lines += [Text(f"{what} with {wanted}: {where}", style="green"), _frame_line(job, each.place)]
+        if each.room is None:
+            lines.append(Text(f"no hole moves there by more than {float(mm(each.distance)):.1f} mm"))
+        elif np.isinf(each.room):
+            lines.append(Text("every place that was examined has it"))
+        else:
+            held = f"no hole by more than {float(mm(each.room)):.1f} mm"
+            lines.append(Text(f"room around it: as long as a shift and turn move {held}, every place examined has it"))
+    return lines
 
 
 def _end_lines(freedom: Freedom, found: Placement) -> list[Text]:
