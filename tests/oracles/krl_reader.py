@@ -54,10 +54,12 @@ class KrlProgram:
     statements: list[str] = field(default_factory=list)  # in order, without comments
 
     def holes(self) -> list[list[Move]]:
-        """The motions, one list per hole: each begins with its PTP."""
+        """The motions, one list per hole: each begins with the last PTP that leads to it."""
         holes: list[list[Move]] = []
-        for move in self.moves:
+        for move, after in zip(self.moves, [*self.moves[1:], None], strict=True):
             if move.kind == "PTP":
+                if after is None or after.kind == "PTP":
+                    continue  # on the way
                 holes.append([])
             holes[-1].append(move)
         return holes

@@ -13,7 +13,7 @@ from oracles.holes import random_hole
 from zerorev.kernels import tour
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
-from zerorev.planning.sequence import Member, _chosen, moves_between
+from zerorev.planning.sequence import Member, _chosen, moves_of
 from zerorev.search.members import members
 from zerorev.search.optimum import best_motion
 
@@ -137,8 +137,8 @@ def test_one_posture_for_a_share_of_the_travel(planned, alone):
 def test_the_budget_counts_from_the_planned_motions(panel):
     """Not from those of least travel: where another objective decides, the planned motion is not among them."""
     joints = np.zeros((3, 6))
-    planned = Member(None, 0, joints, joints[0], travel=2.0)
-    shorter = Member(None, 4, joints, joints[0], travel=1.0)
+    planned = Member(None, 0, joints, joints[0], joints[0], travel=2.0, time=0.0)
+    shorter = Member(None, 4, joints, joints[0], joints[0], travel=1.0, time=0.0)
     few = replace(panel, holes=panel.holes[:2])
     _, chosen = _chosen(few, [(planned, shorter), (planned,)])
     assert chosen == {0: planned, 1: planned}  # one posture within the budget of 1.1 * 4, not of 1.1 * 3
@@ -153,9 +153,9 @@ def test_the_moves_lead_from_hole_to_hole(planned):
         assert (move.start, move.to) == (one.hole.id, other.hole.id)
         np.testing.assert_allclose(move.joints[0], one.motion.joints[-1], rtol=0, atol=1e-10)
         assert np.abs(move.joints[-1] - other.motion.joints[0]).max() < np.deg2rad(30)  # the lead-in lies between
-        turns = np.abs(np.diff(move.joints, axis=0))[0]
-        assert move.time == pytest.approx(max(map(trapezoid, turns, speed, speed / 0.3)))
-        assert move.largest_axis_move == pytest.approx(turns.max())
+        turns = np.abs(np.diff(move.joints, axis=0))
+        assert move.time == pytest.approx(sum(max(map(trapezoid, turn, speed, speed / 0.3)) for turn in turns))
+        assert move.largest_axis_move == pytest.approx(turns.sum(axis=0).max())
     times = sum(hole.cycle_time for hole in drilled) + sum(move.time for move in planned.transitions)
     assert planned.cycle_time == pytest.approx(times)
 
@@ -191,7 +191,7 @@ def test_the_best_order_takes_less_time_than_the_listed_one(panel):
     assert times[1] < 0.9 * times[0]
     assert sorted(best.order) == sorted(listed.order)
     assert [hole.hole.id for hole in best.holes] == [hole.hole.id for hole in listed.holes]
-    for one, other in zip(moves_between(best), best.transitions, strict=True):
+    for one, other in zip(moves_of(best), best.transitions, strict=True):
         np.testing.assert_allclose(one.joints, other.joints, rtol=0, atol=1e-7)
 
 

@@ -184,7 +184,7 @@ def test_the_head_says_what_an_operator_needs(published, plan_of, krl):
         "0 joint reversals in all",
         "turns back 0.5 mm short",
         "T1 first",
-        "not checked for collisions",
+        "checked against the surface of the part alone",
         "$LOAD",
         "$ROBROOT",
         "pull the drill out",

@@ -10,7 +10,8 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joints_along
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.program.export import export
-from zerorev.program.lead_in import KEPT, find_lead_in
+from zerorev.program.lead_in import find_lead_in
+from zerorev.program.outward import KEPT
 
 
 def along(plan, hole, back):

@@ -74,8 +74,10 @@ def compared(plan: Plan, hole: HolePlan, manner: Manner, names: tuple[MotionName
 
 
 def _followed(plan: Plan, hole: HolePlan, drilling: Drilling, motion: Motion, manner: Manner) -> Followed:
+    """Of the hole alone, from its lead-in on: what goes before is in the air."""
     own = replace(hole, motion=motion, findings=())
-    (program,) = build_program(replace(plan, holes=(own,), findings=())).holes
+    settings = replace(plan.settings, approach=0.0, retract=0.0, safe_height=None, home_joints=None)
+    (program,) = build_program(replace(plan, settings=settings, holes=(own,), findings=())).holes
     return followed(drilling, motion.branch, track_of(program, manner), manner)
 
 

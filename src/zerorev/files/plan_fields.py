@@ -73,6 +73,7 @@ HEAD_FIELDS: dict[str, Field] = {
     "transitions.time_s": Field("figure", DIGITS, 1e-6),
     "transitions.changes_posture": _EXACT,
     "transitions.largest_axis_move_deg": Field("figure", DIGITS, 1e-5),
+    "transitions.clearance_mm": Field("figure", DIGITS, 1e-5, optional=True),
     "transitions.findings": Field("finding"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),

@@ -264,8 +264,8 @@ class PlanHead(Form):
     )
     transitions: Annotated[list[TransitionForm], Field(max_length=MOST_HOLES + 1, fail_fast=True)] | None = Field(
         default=None,
-        description="a list of from, to, joints_deg, time_s, changes_posture, largest_axis_move_deg and findings: the "
-        "moves between the holes in their order; or null: not computed",
+        description="a list of from, to, joints_deg, time_s, changes_posture, largest_axis_move_deg, clearance_mm and "
+        "findings: the moves between the holes in their order; or null: not computed",
     )
     cycle_time_s: NotNegative | None = Field(
         default=None,

@@ -13,6 +13,7 @@ __all__ = ["Finding", "FindingKind", "Level"]
 Level = Literal["error", "warning", "info"]
 
 FindingKind = Literal[
+    "approach",
     "base_column",
     "blend",
     "blend_clipped",
@@ -33,6 +34,7 @@ FindingKind = Literal[
     "long_turn",
     "lost_cycles",
     "lost_motion",
+    "near_part",
     "no_stroke",
     "no_torque",
     "normals",
@@ -47,6 +49,7 @@ FindingKind = Literal[
     "spindle_speed",
     "tcp_calibration",
     "threshold",
+    "through_part",
     "tip_difference",
     "tolerance",
     "tool_direction",

@@ -315,6 +315,16 @@ class Transition:
     time: Annotated[float, Figure("all axes together, each with its greatest speed and acceleration", S, least=0)]
     changes_posture: Annotated[bool, Switch("whether the two ends are of different branches")]
     largest_axis_move: Annotated[float, Figure("greatest turn of one axis", DEG, least=0)]
+    clearance: Annotated[
+        float | None,
+        Figure(
+            "least distance of drill, tool and wrist from the part, to 0.01 mm; below 0 inside it",
+            MM,
+            null=None,
+            none="not known",
+            added=True,
+        ),
+    ] = None
     findings: tuple[Finding, ...] = ()
 
 

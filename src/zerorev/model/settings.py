@@ -139,6 +139,56 @@ class Settings:
         float,
         Number("length run along the plunge leg before the drill enters", MM, least=0, label="lead-in"),
     ] = 5e-3
+    approach: Annotated[
+        float,
+        Number(
+            "length run along the drill axis at constant spin before the lead-in; the arm stops where that begins",
+            MM,
+            note="Reversals there are in the air and are not counted; at the feed of the retract",
+            least=0,
+            label="approach",
+        ),
+    ] = 0.0
+    retract: Annotated[
+        float,
+        Number(
+            "length run along the drill axis at constant spin after the stroke, once the arm has stopped",
+            MM,
+            note="Likewise",
+            least=0,
+            label="retract",
+        ),
+    ] = 0.0
+    safe_height: Annotated[
+        float | None,
+        Number(
+            "height over the surface through which the arm moves from hole to hole",
+            MM,
+            none="each move rises as far as it must to stay over it",
+            note="Through a point on the drill axis of each hole, that far from where its stroke begins",
+            least=0,
+            label="safe height",
+        ),
+    ] = None
+    clearance: Annotated[
+        float,
+        Number(
+            "least distance of the tool from the part on the moves between holes; nearer than that there is a finding",
+            MM,
+            least=0,
+            label="clearance from the part",
+        ),
+    ] = 0.0
+    part_thickness: Annotated[
+        float | None,
+        Number(
+            "how far the part goes on behind its surface; 0: there is no part that the moves between holes could meet",
+            MM,
+            none="everything behind the surface counts as part",
+            least=0,
+            label="thickness of the part",
+        ),
+    ] = None
     keep_lead_in: Annotated[
         bool,
         Switch(

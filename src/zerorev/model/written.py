@@ -53,12 +53,14 @@ class WrittenHole:
         axes_deg: the six axis values there [deg], turns included.
         moves: the straight moves from there on; the last one ends in an exact stop.
         statements: all of them, from the move to the first point on.
+        way: those before it, which lead there from the hole before.
     """
 
     line: int = field(compare=False)
     axes_deg: Six
     moves: tuple[WrittenMove, ...]
     statements: tuple[Statement, ...]
+    way: tuple[Statement, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,7 @@ class WrittenProgram:
         base_mm_deg: the part frame in the robot's base frame, as a point.
         holes: in order.
         head: all statements before the first hole.
+        tail: all after the last one.
     """
 
     name: str = field(compare=False)  # in capitals it is in the head
@@ -78,6 +81,7 @@ class WrittenProgram:
     base_mm_deg: Six
     holes: tuple[WrittenHole, ...]
     head: tuple[Statement, ...]
+    tail: tuple[Statement, ...] = ()
 
 
 class Drilled(NamedTuple):

@@ -25,7 +25,7 @@ from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
-from zerorev.program.lead_in import find_lead_in
+from zerorev.program.ways import Way
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
 from zerorev.search.deepest import Deepest
@@ -202,17 +202,20 @@ def with_another_motion(drilling: Drilling, settings: Settings, answer: HolePlan
 
 
 def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
-    """Time of the hole's own moves at their feeds [s], lead-in and all; what speeding up and stopping take is left out.
+    """Time of the hole's own linear moves at their feeds [s], from the approach to the retract.
+
+    What speeding up and stopping take is left out.
 
     Args:
         drilling: what is drilled.
         settings: with the feeds.
         motion: of the hole.
     """
-    profile = motion.profile
-    inwards = find_lead_in(drilling, motion, settings.lead_in).length + float(profile.distance[profile.corner])
+    profile, way = motion.profile, Way.of(drilling, motion, settings)
+    inwards = way.lead_in.length + float(profile.distance[profile.corner])
     outwards = float(profile.distance[-1] - profile.distance[profile.corner])
-    return inwards / settings.feed_plunge + outwards / settings.feed_retract
+    in_the_air = way.approach.length + way.retract.length
+    return inwards / settings.feed_plunge + (outwards + in_the_air) / settings.feed_retract
 
 
 def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:

@@ -30,7 +30,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.hole import cycle_time, lever_findings, motion_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
-from zerorev.planning.sequence import moves_between, time_of
+from zerorev.planning.sequence import moves_of, time_of
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import subject, verify_hole
 from zerorev.verify.digits import moved_figures
@@ -134,7 +134,7 @@ def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
     if sorted(stated.order) != sorted(moving):
         yield differ("order", list(stated.order), moving)
         return
-    moves = moves_between(stated)
+    moves = moves_of(stated)
     found = replace(stated, transitions=moves, cycle_time=time_of((hole.cycle_time for hole in stated.holes), moves))
     data = sequence_data(stated), sequence_data(found)
     yield from fields_differ(*data, {}, fields=HEAD_FIELDS)

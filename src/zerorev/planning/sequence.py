@@ -11,8 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import pairwise, product
-from typing import NamedTuple
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -23,21 +22,21 @@ from zerorev.kernels import tour
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import HolePlan, Plan, Transition
+from zerorev.model.plan import HolePlan, Motion, Plan, Transition
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
-from zerorev.motion.between import accelerations, transition
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, evaluated
 from zerorev.motion.joint_path import FULL_TURN
 from zerorev.planning.hole import with_another_motion
-from zerorev.program.lead_in import find_lead_in
+from zerorev.program.between import accelerations, moves_between, time_of_moves
+from zerorev.program.ways import Stop, Way, stop_of
 from zerorev.search.members import members
 from zerorev.search.rank import Candidate, Order
 from zerorev.workers import HERE, Machines, Workers
 
-__all__ = ["Offer", "Sequenced", "moves_between", "sequenced", "time_of", "with_moves"]
+__all__ = ["Offer", "Sequenced", "moves_of", "sequenced", "time_of", "with_moves"]
 
 Whole = npt.NDArray[np.int64]
 SEED = 1  # of the annealing
@@ -59,15 +58,23 @@ class Member:
         profile: the spin along the path.
         branch: 0..7.
         joints: at the breakpoints, with turns [rad], shape (n, 6).
-        start: where its lead-in begins [rad], shape (6,).
+        start: where the move to it ends, or its safe height is [rad], shape (6,).
+        end: where the move away begins, likewise.
         travel: sum over the joints of the angle moved [rad].
+        time: from the safe height and to it [s].
     """
 
     profile: Profile
     branch: int
     joints: Array
     start: Array
+    end: Array
     travel: float
+    time: float
+
+    def turned(self, turns: Array) -> Member:
+        """The same with whole turns of the axes added [rad], shape (6,)."""
+        return replace(self, joints=self.joints + turns, start=self.start + turns, end=self.end + turns)
 
 
 Offer = tuple[Member, ...]
@@ -139,28 +146,29 @@ def sequenced(
         if not failed:
             break
         changed.clear()
-    places = []
+    stops = []
     for n in order:
         if n in changed:
-            places.append(_place(job.robot, job.tool, job.settings, changed[n]))
+            stops.append(_stop(job.robot, job.tool, job.settings, changed[n]))
         else:
             member = chosen[n]
-            places.append(_Place(job.holes[n].id, member.branch, member.start, member.joints[-1]))
+            motion = Motion(member.profile, member.branch, member.joints)
+            stops.append(stop_of(job.robot, job.tool, job.settings, job.holes[n], motion))
     for n, final in changed.items():
         times[n] = final.cycle_time
-    moves = _transitions(job.robot, job.settings, places)
+    moves = moves_between(job.robot, job.tool, job.settings, stops)
     return Sequenced(changed, tuple(job.holes[n].id for n in order), moves, time_of(times, moves))
 
 
-def moves_between(plan: Plan) -> tuple[Transition, ...]:
+def moves_of(plan: Plan) -> tuple[Transition, ...]:
     """The moves between the holes of a plan in the order that it states.
 
     Args:
         plan: any; holes without a motion are passed over. Of the motions the digits count that a file has.
     """
     holes = [hole for hole in plan.in_order if hole.motion is not None]
-    places = [_place(plan.robot, plan.tool, plan.settings, hole) for hole in holes]
-    return _transitions(plan.robot, plan.settings, places)
+    stops = [_stop(plan.robot, plan.tool, plan.settings, hole) for hole in holes]
+    return moves_between(plan.robot, plan.tool, plan.settings, stops)
 
 
 def with_moves(plan: Plan) -> Plan:
@@ -170,7 +178,7 @@ def with_moves(plan: Plan) -> Plan:
         plan: any.
     """
     plan = replace(plan, order=tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None))
-    moves = moves_between(plan)
+    moves = moves_of(plan)
     time = time_of((hole.cycle_time for hole in plan.holes), moves)
     return replace(plan, transitions=moves, cycle_time=time)
 
@@ -186,33 +194,10 @@ def time_of(holes: Iterable[float | None], moves: Iterable[Transition]) -> float
     return sum(times) + sum(move.time for move in moves) if times else None
 
 
-class _Place(NamedTuple):
-    """Where a hole begins and ends: its id, the branch, and the joints [rad], shape (6,) each."""
-
-    id: str
-    branch: int
-    start: Array
-    end: Array
-
-
-def _place(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> _Place:
+def _stop(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> Stop:
+    """A hole's answer as a stop of the tour; of its motion the digits count that a file has."""
     assert answer.motion is not None
-    motion = written_motion(answer.motion)
-    start = find_lead_in(Drilling(robot, tool, answer.hole), motion, settings.lead_in).joints
-    return _Place(answer.hole.id, motion.branch, start, motion.joints[-1])
-
-
-def _transitions(robot: Robot, settings: Settings, places: Sequence[_Place]) -> tuple[Transition, ...]:
-    """The moves between holes in their order."""
-    home = None if settings.home_joints is None else np.array(settings.home_joints)
-    moves = []
-    if home is not None and places:
-        moves.append(transition(robot, None, places[0].id, (home, places[0].start), None))
-    for one, other in pairwise(places):
-        moves.append(transition(robot, one.id, other.id, (one.end, other.start), (one.branch, other.branch)))
-    if home is not None and places:
-        moves.append(transition(robot, places[-1].id, None, (places[-1].end, home), None))
-    return tuple(moves)
+    return stop_of(robot, tool, settings, answer.hole, written_motion(answer.motion))
 
 
 def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: HolePlan) -> Offer:
@@ -221,8 +206,7 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     if motion is None or score is None:
         return ()
     drilling = Drilling(robot, tool, answer.hole)
-    start = find_lead_in(drilling, motion, settings.lead_in).joints
-    planned = Member(motion.profile, motion.branch, motion.joints, start, score.travel)
+    planned = _member(drilling, settings, motion, score.travel)
     passed = answer.verified is not None and answer.verified.passed
     if not choose or not passed or answer.status != "planned":
         return (planned,)
@@ -234,6 +218,12 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
         if one is best or _affordable(order, one, best):
             found += _turned(drilling, settings, one, planned)
     return tuple(found)
+
+
+def _member(drilling: Drilling, settings: Settings, motion: Motion, travel: float) -> Member:
+    way = Way.of(drilling, motion, settings)
+    time = time_of_moves(drilling.robot, way.arrival) + time_of_moves(drilling.robot, way.departure)
+    return Member(motion.profile, motion.branch, motion.joints, way.arrival[0], way.departure[-1], travel, time)
 
 
 def _affordable(order: Order, one: Candidate, best: Candidate) -> bool:
@@ -249,19 +239,18 @@ def _turned(drilling: Drilling, settings: Settings, one: Candidate, planned: Mem
     """A motion with each of its turns within the limits, but for the planned one; where turns are asked for, those."""
     motion = one.evaluation.motion
     assert motion is not None
-    start = find_lead_in(drilling, motion, settings.lead_in).joints
     same = motion.branch == planned.branch and motion.profile is planned.profile
+    member = planned if same else _member(drilling, settings, motion, one.score.travel)
     if not same:
-        yield Member(motion.profile, motion.branch, motion.joints, start, one.score.travel)
+        yield member
     if settings.near_joints is not None:
         return
-    limits, points = drilling.robot.limits, np.vstack([start, motion.joints])
+    limits, points = drilling.robot.limits, np.vstack([member.start, motion.joints, member.end])
     first = np.ceil((limits.lower - points.min(axis=0)) / FULL_TURN - ROUNDING).astype(int)
     last = np.floor((limits.upper - points.max(axis=0)) / FULL_TURN + ROUNDING).astype(int)
     ways = product(*(range(min(a, 0), max(b, 0) + 1) for a, b in zip(first.tolist(), last.tolist(), strict=True)))
     for _, way in zip(range(MOST_TURNS), (way for way in ways if any(way)), strict=False):
-        turn = FULL_TURN * np.array(way)
-        yield Member(motion.profile, motion.branch, motion.joints + turn, start + turn, one.score.travel)
+        yield member.turned(FULL_TURN * np.array(way))
 
 
 def _answered(robot: Robot, tool: Tool, settings: Settings, task: tuple[HolePlan, Member]) -> HolePlan | None:
@@ -297,13 +286,14 @@ def _chosen(job: Job, offers: Sequence[Offer]) -> tuple[list[int], dict[int, Mem
     counts = [len(offers[n]) for n in able]
     flat = [member for n in able for member in offers[n]]
     travel = np.array([member.travel for member in flat])
+    times = np.array([member.time for member in flat])
     home = np.empty((0, 6)) if settings.home_joints is None else np.array([settings.home_joints])
     asked = tour.Members(
         first=np.concatenate([[0], np.cumsum(counts)]).astype(np.int64),
         start=np.array([member.start for member in flat]),
-        end=np.array([member.joints[-1] for member in flat]),
+        end=np.array([member.end for member in flat]),
         branch=np.array([member.branch for member in flat], dtype=np.int64),
-        own=np.zeros(len(flat)),
+        own=times,
         speed=limits.speed,
         acceleration=accelerations(limits),
         change=CHANGE,
@@ -315,7 +305,7 @@ def _chosen(job: Job, offers: Sequence[Offer]) -> tuple[list[int], dict[int, Mem
     order, block = _blocks(settings, [job.holes[n] for n in able])
     choice, weight = _within(asked, order, travel, budget)
     if settings.order != "listed" and len(able) > 2:
-        order, choice = _improved(asked, order, choice, block, weight * travel)
+        order, choice = _improved(asked, order, choice, block, times + weight * travel)
         choice, _ = _within(asked, order, travel, budget)
     numbers = [able[k] for k in order.tolist()]
     return numbers, {n: flat[m] for n, m in zip(numbers, choice.tolist(), strict=True)}
@@ -342,7 +332,7 @@ def _within(asked: tour.Members, order: Whole, travel: Array, budget: float) -> 
     choice = np.empty(order.size, dtype=np.int64)
 
     def fits(weight: float) -> bool:
-        tour.chain(asked._replace(own=weight * travel), order, choice)
+        tour.chain(asked._replace(own=asked.own + weight * travel), order, choice)
         return bool(travel[choice].sum() <= budget)
 
     if fits(0.0):

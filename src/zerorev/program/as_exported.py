@@ -10,9 +10,9 @@ other number must be equal.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from zerorev.errors import InputError
+from zerorev.errors import InputError, NotExportableError
 from zerorev.model.plan import Plan
 from zerorev.model.written import Drilled, Statement, WrittenHole, WrittenProgram
 from zerorev.program.dialect import Dialect
@@ -54,10 +54,13 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
     moving = tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None)
     if None in refused or all(hole_id in refused for hole_id in moving):
         return Expected(plan, dialect, refused, moving)
-    exported = build_program(plan, skip_failed=True)
+    try:
+        exported = build_program(plan, skip_failed=True)
+    except NotExportableError as refusal:  # a move between two holes
+        return Expected(plan, dialect, {None: "; ".join(refusal.reasons)}, moving)
     program = _read_again(exported, dialect)
     holes = {hole.id: written for hole, written in zip(exported.holes, program.holes, strict=True)}
-    return Expected(plan, dialect, refused, moving, exported, program.head, holes)
+    return Expected(plan, dialect, refused, moving, program, holes)
 
 
 def _read_again(program: Program, dialect: Dialect) -> WrittenProgram:
@@ -73,8 +76,7 @@ class Expected:
         dialect: in which it is written.
         refused: why a hole must not be exported, by its id.
         moving: ids of the holes that have a motion, as they are drilled.
-        exported: the moves of all that may be exported; None where nothing may.
-        head: what stands before them.
+        program: of all that may be exported, read back; None where nothing may.
         holes: what is written for each, by its id.
     """
 
@@ -82,8 +84,7 @@ class Expected:
     dialect: Dialect
     refused: Mapping[str | None, str]
     moving: tuple[str, ...]
-    exported: Program | None = None
-    head: tuple[Statement, ...] = ()
+    program: WrittenProgram | None = None
     holes: Mapping[str, WrittenHole] = field(default_factory=dict)
 
     def beside(self, program: WrittenProgram, file_name: str = "") -> tuple[Drilled, ...]:
@@ -92,17 +93,44 @@ class Expected:
             zip(self.moving, _paired(program, [self.holes.get(own) for own in self.moving], self.dialect), strict=True)
         )
         names = {self.dialect.program_name(name) for name in (self.plan.name, file_name or self.plan.name)}
-        before = (*_name_differs(program, names), *self._head_differs(program, drilled))
-        return tuple(self._hole(hole.hole.id, drilled.get(hole.hole.id), before) for hole in self.plan.holes)
+        before = tuple(_name_differs(program, names))
+        around: dict[str, tuple[str, ...]] = {}
+        kept = tuple(hole_id for hole_id in self.holes if drilled[hole_id] is not None)
+        try:
+            wanted = self._of(kept)
+        except NotExportableError as refusal:  # a move between two holes
+            before += tuple(f"export refuses these holes one after the other: {why}" for why in refusal.reasons)
+        else:
+            if wanted is not None:
+                before += tuple(_differences(program.head[1:], wanted.head[1:], self.dialect, program.holes[0].line))
+                around = self._around(kept, wanted, program, drilled)
+        return tuple(
+            self._hole(hole.hole.id, drilled.get(hole.hole.id), (*before, *around.get(hole.hole.id, ())))
+            for hole in self.plan.holes
+        )
 
-    def _head_differs(self, program: WrittenProgram, drilled: Mapping[str, WrittenHole | None]) -> Iterator[str]:
-        """All but the name; the speed at which the tool may turn depends on which holes are drilled."""
-        if self.exported is None:
-            return
-        kept = tuple(hole for hole in self.exported.holes if drilled[hole.id] is not None)
-        whole = len(kept) in (0, len(self.exported.holes))
-        head = self.head if whole else _read_again(replace(self.exported, holes=kept), self.dialect).head
-        yield from _differences(program.head[1:], head[1:], self.dialect, program.holes[0].line)
+    def _of(self, kept: tuple[str, ...]) -> WrittenProgram | None:
+        """The program of some of the holes, on which its head and the ways between them depend; None of no holes."""
+        if len(kept) in (0, len(self.holes)):
+            return self.program if kept else None
+        return _read_again(build_program(self.plan, skip_failed=True, only=kept), self.dialect)
+
+    def _around(
+        self,
+        kept: tuple[str, ...],
+        wanted: WrittenProgram,
+        program: WrittenProgram,
+        drilled: Mapping[str, WrittenHole | None],
+    ) -> dict[str, tuple[str, ...]]:
+        """What differs on the way to each hole, and after the last one."""
+        found: dict[str, tuple[str, ...]] = {}
+        for hole_id, own in zip(kept, wanted.holes, strict=True):
+            hole = drilled[hole_id]
+            assert hole is not None
+            found[hole_id] = tuple(_differences(hole.way, own.way, self.dialect, hole.line))
+        end = program.holes[-1].moves[-1].line + 1
+        found[kept[-1]] += tuple(_differences(program.tail, wanted.tail, self.dialect, end))
+        return found
 
     def _hole(self, hole_id: str, hole: WrittenHole | None, before: tuple[str, ...]) -> Drilled:
         if hole is None:

@@ -8,9 +8,8 @@ passes the singularity of those angles within the range of position 1.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,10 +18,10 @@ from zerorev.model._arrays import Array, transform
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, named_holes
-from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import tcp_pose
-from zerorev.program.lead_in import find_lead_in
-from zerorev.program.waypoints import Waypoint, waypoints, with_blends
+from zerorev.program.between import moves_between
+from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
+from zerorev.program.ways import Stop, stop_of
 
 __all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals"]
 
@@ -66,7 +65,7 @@ class LinearMove:
     psi: float
     feed: float
     blend: float
-    leg: Literal["lead-in", "plunge", "retract"]
+    leg: Leg
     comment: str
 
 
@@ -78,7 +77,9 @@ class HoleProgram:
         id: of the hole.
         axis: unit plunge direction in the part frame, shape (3,).
         depth: stroke [m].
-        start: the move to the lead-in point.
+        way: joints through which moves of all axes lead to the start, with a stop at each [rad], shape (n, 6).
+        start: the move to where the linear moves begin.
+        lead_in: length run along the plunge leg before the stroke begins [m].
         moves: in order.
         corner: index of the move that ends at the turning point of the motion.
         reversals_per_joint: as planned, shape (6,).
@@ -87,15 +88,12 @@ class HoleProgram:
     id: str
     axis: Array
     depth: float
+    way: Array
     start: JointMove
+    lead_in: float
     moves: tuple[LinearMove, ...]
     corner: int
     reversals_per_joint: tuple[int, ...]
-
-    @property
-    def lead_in(self) -> float:
-        """Length run along the plunge leg before the stroke begins [m]."""
-        return max(self.start.standoff - self.depth, 0.0)
 
     @property
     def corner_move(self) -> LinearMove:
@@ -118,6 +116,7 @@ class Program:
         T_base_part: the part frame, shape (4, 4), translation [m]; every pose is given in it.
         settings: how the motion is run.
         holes: as they are drilled.
+        end: joints through which moves of all axes lead away from the last hole [rad], shape (n, 6).
         findings: what was shortened or left out on the way here.
     """
 
@@ -131,30 +130,36 @@ class Program:
     T_base_part: Array
     settings: Settings
     holes: tuple[HoleProgram, ...]
+    end: Array
     findings: tuple[Finding, ...] = ()
 
 
-def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
+def build_program(plan: Plan, *, skip_failed: bool = False, only: Collection[str] | None = None) -> Program:
     """Make the moves of a plan.
 
     Args:
         plan: verified, without error findings.
         skip_failed: leave out the holes that must not be exported, and say so in a finding, instead of refusing.
+        only: ids of the holes that are wanted; None: all.
 
     Raises:
         NotExportableError: a hole that was not verified, has an error finding or has no motion; with `skip_failed`,
-            only where no hole is left or the plan as a whole has an error finding.
+            only where no hole is left or the plan as a whole has an error finding. A move between holes that leads
+            through the part.
     """
     refused = refusals(plan)
-    kept = [hole for hole in plan.in_order if hole.hole.id not in refused]
+    if only is not None:
+        refused = {hole_id: why for hole_id, why in refused.items() if hole_id is None or hole_id in only}
+    wanted = [hole for hole in plan.in_order if only is None or hole.hole.id in only]
+    kept = [hole for hole in wanted if hole.hole.id not in refused]
     if None in refused or (refused and not skip_failed) or not kept:
         reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
         raise NotExportableError(tuple(reasons) or ("the plan has no holes",))
-    holes, findings = [], _left_out(plan, refused)
-    for hole in kept:
-        moves, found = _hole_program(plan, hole)
-        holes.append(moves)
-        findings.extend(found)
+    findings = _left_out(plan, refused)
+    stops = [_stop(plan, hole) for hole in kept]
+    ways, end = _between(plan, stops)
+    holes = [_hole_program(plan, *each) for each in zip(kept, stops, ways, strict=True)]
+    findings += [finding for stop in stops for finding in stop.way.findings]
     return Program(
         name=plan.name,
         robot=plan.robot.name,
@@ -166,6 +171,7 @@ def build_program(plan: Plan, *, skip_failed: bool = False) -> Program:
         T_base_part=plan.T_base_part,
         settings=plan.settings,
         holes=tuple(holes),
+        end=end,
         findings=tuple(findings),
     )
 
@@ -211,11 +217,39 @@ def _why_not(hole: HolePlan, errors: list[str]) -> str:
     return ""
 
 
-def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Finding, ...]]:
+def _stop(plan: Plan, hole: HolePlan) -> Stop:
     assert hole.motion is not None  # _why_not has seen to it
-    lead_in = find_lead_in(Drilling(plan.robot, plan.tool, hole.hole), hole.motion, plan.settings.lead_in)
-    points, corner = waypoints(hole.motion.profile, lead_in.length)
-    points = with_blends(points, corner, plan.settings)
+    return stop_of(plan.robot, plan.tool, plan.settings, hole.hole, hole.motion)
+
+
+def _between(plan: Plan, stops: Sequence[Stop]) -> tuple[list[Array], Array]:
+    """The points through which all axes move before each hole, and after the last one [rad], shape (n, 6) each.
+
+    Raises:
+        NotExportableError: a move leads through the part.
+    """
+    moves = moves_between(plan.robot, plan.tool, plan.settings, stops)
+    errors = [finding.message for move in moves for finding in move.findings if finding.level == "error"]
+    if errors:
+        raise NotExportableError(tuple(errors))
+    if plan.settings.home_joints is not None:
+        return [moves[0].joints[:-1], *(move.joints[1:-1] for move in moves[1:-1])], moves[-1].joints[1:]
+    return [stops[0].way.arrival[:-1], *(move.joints[1:-1] for move in moves)], stops[-1].way.departure[1:]
+
+
+def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HoleProgram:
+    motion, settings = hole.motion, plan.settings
+    assert motion is not None
+    lead_in, approach, retract = stop.way.lead_in, stop.way.approach, stop.way.retract
+    points, corner = waypoints(motion.profile, lead_in.length)
+    points = with_blends(points, corner, settings)
+    if approach.length > 0:
+        ahead = replace(points[0], standoff=points[0].standoff + approach.length)
+        points = (ahead, replace(points[0], leg="approach"), *points[1:])
+        corner += 1
+    if retract.length > 0:
+        out = points[-1].standoff + retract.length
+        points = (*points, Waypoint(out, points[-1].psi, "depart", "retracted"))
     T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)
     poses = [_tool_pose(T_part_base, hole, point) for point in points]
     moves = tuple(
@@ -223,23 +257,24 @@ def _hole_program(plan: Plan, hole: HolePlan) -> tuple[HoleProgram, tuple[Findin
             pose,
             point.standoff,
             point.psi,
-            plan.settings.feed_retract if point.leg == "retract" else plan.settings.feed_plunge,
+            settings.feed_plunge if point.leg in ("lead-in", "plunge") else settings.feed_retract,
             point.blend,
             point.leg,
             point.comment,
         )
         for point, pose in zip(points[1:], poses[1:], strict=True)
     )
-    program = HoleProgram(
+    return HoleProgram(
         id=hole.hole.id,
         axis=T_part_base[:3, :3] @ hole.hole.direction,
-        depth=float(hole.motion.profile.standoff[0]),
-        start=JointMove(lead_in.joints, poses[0], points[0].standoff, points[0].psi),
+        depth=float(motion.profile.standoff[0]),
+        way=way,
+        start=JointMove(approach.joints, poses[0], points[0].standoff, points[0].psi),
+        lead_in=lead_in.length,
         moves=moves,
         corner=corner - 1,
         reversals_per_joint=hole.score.reversals_per_joint if hole.score else (0,) * 6,
     )
-    return program, lead_in.findings
 
 
 def _tool_pose(T_part_base: Array, hole: HolePlan, point: Waypoint) -> Array:

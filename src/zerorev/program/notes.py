@@ -146,8 +146,8 @@ def _spindle(program: Program) -> tuple[Finding, ...]:
 
 def _unchecked(program: Program) -> tuple[Finding, ...]:
     message = (
-        "the PTP move to each lead-in point is not checked for collisions: it sets out from wherever the robot is, or "
-        "from the end of the hole before"
+        "the moves of all axes from hole to hole are checked against the surface of the part alone, not for fixtures, "
+        "the cell or the arm's own links; the first one, from wherever the robot is, is not checked at all"
     )
     return (Finding("info", "unchecked_moves", message),)
 

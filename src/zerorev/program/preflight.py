@@ -65,7 +65,8 @@ def _joints(plan: Plan, hole_plan: HolePlan, program: Program, hole: HoleProgram
         message = f"the plan's joints miss its poses by {off * 1e3:.3g} mm and {np.rad2deg(turned):.3g} deg"
         found.append(Finding("error", "joints", message, hole.id))
     limits = plan.robot.limits
-    beyond = (joints < limits.lower - ROUND_OFF) | (joints > limits.upper + ROUND_OFF)
+    everywhere = np.vstack([joints, hole.way, program.end])
+    beyond = (everywhere < limits.lower - ROUND_OFF) | (everywhere > limits.upper + ROUND_OFF)
     if names := [name for i, name in enumerate(plan.robot.joint_names) if beyond[:, i].any()]:
         found.append(Finding("error", "limit", f"{' '.join(names)} beyond the joint limits", hole.id))
     return tuple(found)

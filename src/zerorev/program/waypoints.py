@@ -10,10 +10,13 @@ import numpy as np
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 
-__all__ = ["GREATEST_TURN", "Waypoint", "waypoints", "with_blends"]
+__all__ = ["GREATEST_TURN", "Leg", "Waypoint", "waypoints", "with_blends"]
 
 GREATEST_TURN = float(np.deg2rad(120.0))
 """Greatest turn of the tool in one move [rad]: at 180 deg the short way round is ambiguous (theory §5)."""
+
+
+Leg = Literal["approach", "lead-in", "plunge", "retract", "depart"]
 
 
 @dataclass(frozen=True)
@@ -30,7 +33,7 @@ class Waypoint:
 
     standoff: float
     psi: float
-    leg: Literal["lead-in", "plunge", "retract"]
+    leg: Leg
     comment: str
     blend: float = 0.0
 
@@ -49,7 +52,7 @@ def waypoints(profile: Profile, lead_in: float) -> tuple[tuple[Waypoint, ...], i
         points = [ahead, *_split(ahead, start)]
     corner = 0
     for k in range(1, len(profile.standoff)):
-        leg: Literal["plunge", "retract"] = "plunge" if k <= profile.corner else "retract"
+        leg: Leg = "plunge" if k <= profile.corner else "retract"
         last = k == len(profile.standoff) - 1
         comment = _corner(profile) if k == profile.corner else "end of the stroke" if last else "breakpoint"
         end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, comment)

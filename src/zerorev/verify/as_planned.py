@@ -35,14 +35,18 @@ class Places(NamedTuple):
     Attributes:
         T_base_tool: poses of the program's tool frame, shape (n, 4, 4), translation [m].
         standoff: along the planned axis [m], shape (n,).
+        first: index of the point at which the lead-in begins; before it is the approach, in the air.
         lead: index of the point at which the stroke begins.
         corner: index of the deepest point.
+        last: index of the point at which the stroke ends; after it the tool is retracted, in the air.
     """
 
     T_base_tool: Array
     standoff: Array
+    first: int
     lead: int
     corner: int
+    last: int
 
 
 def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: WrittenHole) -> Places:
@@ -55,15 +59,18 @@ def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: Wr
         written: the moves.
     """
     body = skeleton(plan.robot.arm, np.deg2rad(_floats(written.axes_deg))[None])
-    first = transform(body.R_base_flange[:, :, 0], body.flange[:, 0]) @ _frame(program.tool_mm_deg)
+    begin = transform(body.R_base_flange[:, :, 0], body.flange[:, 0]) @ _frame(program.tool_mm_deg)
     T_base_part = _frame(program.base_mm_deg)
-    poses = np.stack([first, *(T_base_part @ _frame(move.point_mm_deg) for move in written.moves)])
+    poses = np.stack([begin, *(T_base_part @ _frame(move.point_mm_deg) for move in written.moves)])
     hole = hole_plan.hole
     standoff = (hole.target - poses[:, :3, 3]) @ hole.direction
     corner = int(np.argmin(standoff))
+    # on the stroke and its lead-in every point but the corner is blended
+    stops = [k for k, move in enumerate(written.moves[:-1], start=1) if not move.blend_mm and k != corner]
+    first, last = int(1 in stops), len(poses) - 1 - int(len(poses) - 2 in stops)
     # where the tool is already at the start of the stroke, there is no lead-in
-    lead = int(np.argmin(np.abs(standoff[: corner + 1] - hole.depth)))
-    return Places(poses, standoff, lead, corner)
+    lead = first + int(np.argmin(np.abs(standoff[first : corner + 1] - hole.depth)))
+    return Places(poses, standoff, first, lead, corner, last)
 
 
 def frames_as_planned(plan: Plan, program: WrittenProgram) -> Iterator[str]:
@@ -96,12 +103,13 @@ def moves_as_planned(
         yield "the points do not lead in to one deepest point and out again"
         return
 
-    # distance along the planned path, below 0 on the lead-in; the corner is where the plan has it
+    # distance along the planned path, below 0 before the stroke; the corner is where the plan has it
     depth, corner = float(profile.standoff[0]), float(profile.standoff.min())
     inwards = np.arange(len(at.standoff)) <= at.corner
     distance = np.where(inwards, depth - at.standoff, depth + at.standoff - 2 * corner)
     knots = profile.distance
-    psi = np.interp(distance, knots, profile.psi) + np.minimum(distance, 0) * -profile.twist_rate[0]
+    turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
+    psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
     off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tool)
     slack = np.where(np.arange(len(distance)) == 0, BY_AXES, LENGTH)
     steepest = float(np.abs(profile.twist_rate).max())
@@ -111,7 +119,13 @@ def moves_as_planned(
     for standoff, knot in zip(profile.standoff, knots, strict=True):
         if (np.abs(distance - knot) > slack).all():
             yield f"no point of the program lies at the plan's breakpoint at stand-off {_mm(standoff)}"
-    if distance[-1] > knots[-1] + LENGTH or distance[0] < -settings.lead_in - BY_AXES:
+    in_the_air = distance[at.first] - distance[0], distance[-1] - distance[at.last]
+    if (
+        distance[at.first] < -settings.lead_in - slack[at.first]
+        or in_the_air[0] > settings.approach + slack[0]
+        or abs(distance[at.last] - knots[-1]) > LENGTH
+        or in_the_air[1] > settings.retract + LENGTH
+    ):
         yield f"the program runs from {_mm(at.standoff[0])} to {_mm(at.standoff[-1])} of stand-off, beyond the plan"
     for name, turn in zip(names[1:], np.abs(np.diff(psi)), strict=True):
         if turn > TURN:
@@ -120,13 +134,13 @@ def moves_as_planned(
         yield f"the axis values at line {written.line} are of branch {branch}, the plan says {motion.branch}"
 
     for k, move in enumerate(written.moves[:-1], start=1):
-        asked = settings.blend if k == at.corner else settings.passing_blend
+        asked = settings.blend if k == at.corner else 0.0 if k in (at.first, at.last) else settings.passing_blend
         fits = min(asked, abs(steps[k - 1]) / 2, abs(steps[k]) / 2)
         blend = float(move.blend_mm) * 1e-3
         if abs(blend - fits) > LENGTH or (blend > 0) != (asked > 0):
             yield f"line {move.line} is blended by {_mm(blend)}, the plan asks for {_mm(fits)}"
     for k, move in enumerate(written.moves):
-        feed = settings.feed_plunge if k < at.corner else settings.feed_retract
+        feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
         if abs(float(move.feed_m_s) - feed) > FEED:
             yield f"line {move.line} has a feed of {float(move.feed_m_s) * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
 

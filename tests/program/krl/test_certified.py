@@ -20,6 +20,7 @@ from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
 from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import build_program
+from zerorev.verify.as_planned import places
 from zerorev.verify.certificate.certify import certify_hole
 from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
@@ -43,9 +44,9 @@ def certify_motion_alone(plan, text):
     program, hole_plan = read_krl(text), plan.holes[-1]
     (*_, hole) = program.holes
     axes = np.deg2rad([[float(angle) for angle in hole.axes_deg]])
-    corner = 1 + max(range(len(hole.moves)), key=lambda k: hole.moves[k].point_mm_deg[0])  # a plunge along +X
     with ball_arithmetic():
-        motion = written_motion(plan.robot.arm, program, hole, hole_plan.hole, corner - 1, corner)
+        at = places(plan, hole_plan, program, hole)
+        motion = written_motion(plan.robot.arm, program, hole, hole_plan.hole, at)
         return proof.prove(plan.robot, motion, axes)
 
 

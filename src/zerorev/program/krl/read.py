@@ -42,6 +42,7 @@ def read_krl(text: str, file: str = "program") -> WrittenProgram:
 class _Hole:
     line: int
     axes: Six
+    way: tuple[Statement, ...] = ()
     moves: list[WrittenMove] = field(default_factory=list)
     statements: list[Statement] = field(default_factory=list)
 
@@ -58,6 +59,7 @@ class _Reading:
     head: list[Statement] = field(default_factory=list)
     hole: _Hole | None = None
     holes: list[WrittenHole] = field(default_factory=list)
+    tail: tuple[Statement, ...] = ()
 
     def take(self, statement: Statement) -> None:
         """One statement of the file."""
@@ -100,8 +102,13 @@ class _Reading:
     def go(self, _: str, numbers: tuple[Decimal, ...]) -> None:
         if missing := [name for name in NEEDED if name not in self.settings]:
             self.refuse(f"a move before {', '.join(missing)} is set")
-        self.close()
-        self.hole = _Hole(self.line, _six(numbers))
+        """A move of all axes: to a point on the way, if another follows before the first straight move."""
+        before: tuple[Statement, ...] = ()
+        if self.hole is not None and not self.hole.moves:
+            before = (*self.hole.way, *self.hole.statements)
+        else:
+            self.close()
+        self.hole = _Hole(self.line, _six(numbers), before)
 
     def go_straight(self, _: str, numbers: tuple[Decimal, ...]) -> None:
         self.move(numbers, blended=False)
@@ -119,6 +126,8 @@ class _Reading:
         self.hole.moves.append(WrittenMove(self.line, _six(numbers), blend, self.settings["$VEL.CP"][0]))
 
     def finish(self, *_: object) -> None:
+        if self.hole is not None and not self.hole.moves:
+            self.tail, self.hole = (*self.hole.way, *self.hole.statements), None
         self.close()
         self.ended = True
 
@@ -127,11 +136,9 @@ class _Reading:
         hole, self.hole = self.hole, None
         if hole is None:
             return
-        if not hole.moves:
-            self.refuse(f"the hole that begins at line {hole.line} ends without a LIN")
         if hole.moves[-1].blend_mm:
             self.refuse(f"the last move of a hole (line {hole.moves[-1].line}) is blended", accepted="no C_DIS")
-        self.holes.append(WrittenHole(hole.line, hole.axes, tuple(hole.moves), tuple(hole.statements)))
+        self.holes.append(WrittenHole(hole.line, hole.axes, tuple(hole.moves), tuple(hole.statements), hole.way))
 
     def end(self) -> WrittenProgram:
         if not self.ended or not self.name:
@@ -139,7 +146,7 @@ class _Reading:
         if not self.holes:
             self.refuse("the program has no holes")
         tool, base = (_six(self.settings[name]) for name in ("$TOOL", "$BASE"))
-        return WrittenProgram(self.name, tool, base, tuple(self.holes), tuple(self.head))
+        return WrittenProgram(self.name, tool, base, tuple(self.holes), tuple(self.head), self.tail)
 
     def refuse_form(self, statement: Statement) -> NoReturn:
         alike = [form for form in SOURCES if words(form, self.refuse)[0] == statement.words[0]]

@@ -26,7 +26,7 @@ from zerorev.program.krl.text import (
     settled,
     turn_about_x,
 )
-from zerorev.program.neutral import HoleProgram, JointMove, LinearMove, Program
+from zerorev.program.neutral import HoleProgram, LinearMove, Program
 from zerorev.program.notes import notes, turn_speed
 
 __all__ = ["to_krl"]
@@ -40,7 +40,8 @@ RULE = "; " + "-" * 98
 
 SAFETY = (
     "Run the program in T1 first, the spindle off and no part in place.",
-    "PTP moves are not checked for collisions, neither the first nor those between holes.",
+    "PTP moves are checked against the surface of the part alone, and the first one not at all: not for fixtures, "
+    "the cell or the arm's own links.",
     "Spindle, coolant and payload ($LOAD) are not set here. The spindle must run before the drill enters.",
     "$BASE is given from the robot's own base: it holds as written where $ROBROOT equals $WORLD.",
     "$TOOL, $BASE and the speeds are set at the top: after a reset do not start from a line further down.",
@@ -83,6 +84,8 @@ def to_krl(
     ]
     for number, hole in enumerate(program.holes, start=1):
         lines += _hole(hole, f"Hole {number} of {len(program.holes)}")
+    if len(program.end):
+        lines += [";FOLD Away from the last hole", *(_ptp(joints) for joints in program.end), ";ENDFOLD"]
     return "\n".join([*lines, "END", ""])
 
 
@@ -148,13 +151,14 @@ def _settings(program: Program) -> list[str]:
 
 
 def _hole(hole: HoleProgram, title: str) -> list[str]:
-    """A PTP by axis values, then absolute linear moves.
+    """PTP moves by axis values, then absolute linear moves.
 
     Never LIN_REL: selected again after a stop within the stroke it runs its whole stroke again from there, into the
     material or the fixture; an absolute LIN only runs what is left. Between the linear moves stand nothing but
     assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
     """
-    lines = [f";FOLD {title}: {clean(hole.id)[:LONGEST_ID]}", *_about(hole), _ptp(hole.start)]
+    lines = [f";FOLD {title}: {clean(hole.id)[:LONGEST_ID]}", *_about(hole)]
+    lines += [_ptp(joints) for joints in (*hole.way, hole.start.joints)]
     A, B = axis_angles(hole.axis)
     feed, radius = None, ""
     for move in hole.moves:
@@ -181,9 +185,9 @@ def _about(hole: HoleProgram) -> list[str]:
     ]
 
 
-def _ptp(move: JointMove) -> str:
+def _ptp(joints: Array) -> str:
     # axis values carry the turns of A4 and A6, which a pose with S and T would leave to the controller
-    values = [fixed(angle, AXIS_DECIMALS) for angle in np.rad2deg(move.joints)]
+    values = [fixed(angle, AXIS_DECIMALS) for angle in np.rad2deg(joints)]
     return f"PTP {aggregate('AXIS', 'A1 A2 A3 A4 A5 A6', values)}"
 
 

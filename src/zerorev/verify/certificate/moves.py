@@ -15,6 +15,7 @@ from flint import arb
 from zerorev.model.hole import Hole
 from zerorev.model.robot import ArmGeometry
 from zerorev.model.written import Six, WrittenHole, WrittenProgram
+from zerorev.verify.as_planned import Places
 from zerorev.verify.certificate.arm import flange_at
 from zerorev.verify.certificate.path import Motion, Rig, Segment, motion_of
 from zerorev.verify.certificate.vector import Axes, Vector, axis_angle, combined, dot, onto, vector
@@ -22,9 +23,7 @@ from zerorev.verify.certificate.vector import Axes, Vector, axis_angle, combined
 __all__ = ["written_motion"]
 
 
-def written_motion(
-    arm: ArmGeometry, program: WrittenProgram, written: WrittenHole, hole: Hole, lead: int, corner: int
-) -> Motion:
+def written_motion(arm: ArmGeometry, program: WrittenProgram, written: WrittenHole, hole: Hole, at: Places) -> Motion:
     """The motion of one hole of a program.
 
     Args:
@@ -32,8 +31,7 @@ def written_motion(
         program: whose frames the points are given in.
         written: the moves.
         hole: as planned; only to tell stand-offs in messages.
-        lead: how many moves lead to the start of the stroke.
-        corner: how many moves lead to the corner.
+        at: where its points lie.
     """
     tip_in_flange, tool = _frame(program.tool_mm_deg)
     part, base = _frame(program.base_mm_deg)
@@ -54,8 +52,9 @@ def written_motion(
         way = combined((tips[k + 1], arb(1)), (tips[k], arb(-1)))
         same = k > 0 and move.point_mm_deg[3:] == written.moves[k - 1].point_mm_deg[3:]
         axis, angle = (flanges[k][2], arb(0)) if same else axis_angle(flanges[k], flanges[k + 1])
-        leg = "lead-in" if k < lead else "plunge" if k < corner else "retract"
-        blend = "blended corner" if k + 1 == corner else "blend"
+        ends = (at.first, "approach"), (at.lead, "lead-in"), (at.corner, "plunge"), (at.last, "retract")
+        leg = next((name for end, name in ends if k < end), "way out")
+        blend = "blended corner" if k + 1 == at.corner else "blend"
         segments.append(
             Segment(
                 where=f"on the {leg} (line {move.line})",
@@ -70,7 +69,7 @@ def written_motion(
                 radius=_metre(move.blend_mm),
             )
         )
-    return motion_of(segments, lead, corner)
+    return motion_of(segments, at.lead, at.corner, at.first, at.last)
 
 
 def _metre(length_mm: Decimal) -> arb:

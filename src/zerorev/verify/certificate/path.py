@@ -179,29 +179,35 @@ class Motion(NamedTuple):
     Attributes:
         legs: in order of motion, each beginning where the one before ends.
         blends: at the bends.
+        first: how many of `legs` lie before the lead-in: there joints may reverse.
         start: how many of `legs` lie before the stroke.
         turn: how many of `legs` lie before the corner.
+        last: how many of `legs` lie before the end of the stroke: after it joints may reverse.
     """
 
     legs: list[Arc]
     blends: list[Blend]
+    first: int
     start: int
     turn: int
+    last: int
 
     @property
     def leg_lengths(self) -> tuple[float, float]:
         """Path of the plunge and of the retract [m]."""
         lengths = [float(arc.length) for arc in self.legs]
-        return sum(lengths[self.start : self.turn]), sum(lengths[self.turn :])
+        return sum(lengths[self.start : self.turn]), sum(lengths[self.turn : self.last])
 
 
-def motion_of(segments: Sequence[Segment], start: int, corner: int) -> Motion:
+def motion_of(segments: Sequence[Segment], start: int, corner: int, first: int = 0, last: int | None = None) -> Motion:
     """Straight moves one after the other, and the blends between them.
 
     Args:
         segments: in order of motion.
         start: how many of them lie before the stroke.
         corner: how many of them lie before the corner.
+        first: how many of them lie before the lead-in.
+        last: how many of them lie before the end of the stroke; None: all.
     """
     legs: list[Arc] = []
     blends: list[Blend] = []
@@ -221,7 +227,8 @@ def motion_of(segments: Sequence[Segment], start: int, corner: int) -> Motion:
         else:
             legs.append(segment.part(here, one, k))
             here, counts[k] = zero, len(legs)
-    return Motion(legs, blends, counts[start], counts[corner])
+    end = len(segments) if last is None else last
+    return Motion(legs, blends, counts[first], counts[start], counts[corner], counts[end])
 
 
 def _series(quadratic: Quadratic, t: arb, half: arb) -> tuple[arb_series, arb_series]:

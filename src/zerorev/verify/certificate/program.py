@@ -83,5 +83,5 @@ def certify_program_hole(
 
     first = np.deg2rad([[float(angle) for angle in written.axes_deg]])
     with ball_arithmetic():
-        path = written_motion(plan.robot.arm, program, written, hole_plan.hole, at.lead, at.corner)
+        path = written_motion(plan.robot.arm, program, written, hole_plan.hole, at)
         return prove(plan.robot, path, first, claimed_reversals(score), on_other_turns)

@@ -34,7 +34,8 @@ def prove(
 
     Args:
         robot: the arm.
-        motion: all of it; the least rates are those of the stroke, not of what comes before it.
+        motion: all of it; the least rates are those of the stroke, not of what comes before it. In the air, before the
+            lead-in and after the stroke, only reach and limits are proven.
         stated: controller angles with turns [rad], shape (n, 6): at the begin, and if n > 1 at the breakpoints that
             follow. The first row gives the posture and the turns.
         reversing: joints that are said to reverse, counted from 0: they are not certified.
@@ -47,12 +48,14 @@ def prove(
     walk = Walk(setting, robot.joint_names, set(range(6)), PIECES * (1 + len(motion.legs) // 100))
     walk.followed -= (leaving := set(reversing))
     walk.undecided += [f"{robot.joint_names[i]} is claimed to reverse: not certified" for i in sorted(leaving)]
+    aloft = Walk(setting, robot.joint_names, set(), walk.budget)
     joints = Joints(robot, setting, stated)
     before, stroke, blended = Slowest(), Slowest(), Slowest()
     try:
         ends = [joints.begin(motion.legs[0])]
         for k, arc in enumerate(motion.legs):
-            ends.append(joints.end(arc, walk.along(arc, ends[-1], before if k < motion.start else stroke)))
+            on = walk if motion.first <= k < motion.last else aloft
+            ends.append(joints.end(arc, on.along(arc, ends[-1], stroke if motion.start <= k < motion.last else before)))
         for arc, first in motion.blends:
             cut = joints.end(arc, walk.along(arc, ends[first], blended))
             _same_turns(walk, arc, cut, ends[first + 2])
@@ -61,12 +64,13 @@ def prove(
         nan = np.full(6, np.nan)
         return _outcome(walk, joints, nan, nan, nan)
 
+    walk.pieces += aloft.pieces
     walk.settle_pauses()
     room = joints.limit_distance()
     if not joints.refuted and (room < 0).any():
         near = [name for name, distance in zip(walk.names, room, strict=True) if distance < 0]
         walk.undecided.append(f"{', '.join(near)}: whether a limit is passed could not be decided")
-    knots = ends[motion.start], ends[motion.turn], ends[-1]
+    knots = ends[motion.start], ends[motion.turn], ends[motion.last]
     walk.refuted += untrue(
         Proven(walk.names, walk.followed, knots, motion.leg_lengths, stroke.met, joints.limit_distance_met())
     )
