@@ -228,7 +228,9 @@ class TestInterrupted:
         counted.clear()
         assert main(["plan", str(job_file), "-o", str(target)]) == cli.FOUND
         out, err = capsys.readouterr()
-        assert err == f"note: resuming after 3 of 5 holes in {target}.part\n"
+        note, elapsed = err.splitlines()
+        assert note == f"note: resuming after 3 of 5 holes in {target}.part"
+        assert elapsed.startswith("note: elapsed time ")
         assert sum("6 → 0" in line for line in out.splitlines()) == 4
         assert counted == ["P2", "P3"]
         assert json.loads(target.read_text())["holes"] == plan_to_json(plan)["holes"]
