@@ -1,5 +1,8 @@
 """Plans that are refused, plans of which a part is exported, and the names and comments of what is written."""
 
+import json
+import os
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +15,7 @@ from zerorev.model.finding import Finding
 from zerorev.program.dialect import ProgramFile
 from zerorev.program.dialects import DIALECTS, read_program
 from zerorev.program.export import export
+from zerorev.program.krl.names import digest, identifier, label, part_name
 from zerorev.program.krl.write import to_krl
 from zerorev.program.neutral import build_program
 
@@ -87,7 +91,7 @@ def test_an_error_finding_of_the_plan_about_one_hole_refuses_that_hole(published
     plan = spoil(plan, findings=(Finding("error", "x", "something about it", "position 3"),))
     with pytest.raises(NotExportableError, match="hole position 3: something about it"):
         export(plan)
-    assert ";FOLD Hole 1 of 1: position 1" in export(plan, skip_failed=True).text
+    assert ";FOLD Hole 1 of 2: position 1" in export(plan, skip_failed=True).text
 
 
 def test_what_a_plan_says_of_its_check_is_not_taken_on_trust(published, plan_of, spoil):
@@ -125,29 +129,77 @@ def test_the_same_plan_gives_the_same_text(published, plan_of):
 
 NAMES = {
     "panel": "panel",
-    "Panel 7, left side": "Panel_7_left_side",
-    "7th": "drill_7th",
-    "_x": "x",
-    "": "drill",
-    "穴": "drill",
-    "Türblech": "Turblech",
-    "LIN": "drill_LIN",
-    "cell": "drill_cell",
-    "a" * 40: "a" * 24,
-    "a_name_with_23_letters__and_more": "a_name_with_23_letters",
+    "Panel 7, left side": "Panel_7_left_side_",
+    "7th": "drill_7th_",
+    "_x": "x_",
+    "": "drill_",
+    "穴": "drill_",
+    "Türblech": "Turblech_",
+    "LIN": "drill_LIN_",
+    "drill_LIN": "drill_LIN",
+    "cell": "drill_cell_",
+    "spl": "drill_spl_",
+    "Nul": "drill_Nul_",
+    "a" * 24: "a" * 24,
+    "a" * 40: "a" * 17 + "_",
+    "a_name_with__16___letters": "a_name_with__16_",
 }
+"""A name that stays is whole here; of one that does not, what is before the digest."""
 
 
 @pytest.mark.parametrize(("name", "called"), NAMES.items())
 def test_program_names(name, called, published, plan_of, krl):
     exported = export(plan_of(published(1), name=name))
-    assert exported.name == called
+    if name == called:
+        assert exported.name == called
+    else:
+        assert re.fullmatch(re.escape(called) + "[a-z2-7]{6}", exported.name)
     assert [file.name for file in exported.files] == [f"{exported.name}.src"]
-    assert krl.read(exported.text).name == called
+    assert krl.read(exported.text).name == exported.name
+
+
+ALIKE = [
+    "panel_upper_skin_station_100", "panel_upper_skin_station_200", "a b", "a-b", "a_b", "a__b", "a b ", "7", "drill_7",
+    "drill 7", "", "drill", "drill_", "_", "穴", "孔", "?", "ä", "a", "ö", "o", "LIN", "drill_LIN", "con", "drill_con",
+    "lpt1", "x" * 24, "x" * 25, "x" * 26, "x" * 17 + "_", "a_name_with_23_letters__", "a_name_with_23_letters__and_so",
+]  # fmt: skip
+
+
+def test_no_two_names_become_one():
+    """Not to a controller either, nor to Windows: they do not tell capitals from small letters."""
+    made = [identifier(name) for name in ALIKE]
+    assert len({name.lower() for name in made}) == len(ALIKE)
+    assert [identifier(name) for name in made] == made
+    for name in made:
+        assert re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,23}", name)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "SPL SLIN_REL SPTP_REL SCIRC_REL BRAKE_F ASYPTP STOP STEP SEC MOD DIV WITH DELAY PATH ONSTART C_DIS C_SPL SIN",
+        "COS ATAN2 ABS SQRT FORWARD INVERSE VARSTATE STRTOINT ERR_RAISE LOAD FDAT LDAT PDAT MSGLIB USER_GRP NEW_SERV",
+        "BAS SPS IR_STOPM CELL P00 CON PRN AUX NUL COM1 LPT9 PTP LIN",
+    ],
+)
+def test_words_that_a_controller_or_windows_keeps_for_itself(words):
+    for name in (*words.split(), *words.lower().split(), *words.title().split()):
+        assert identifier(name).startswith(f"drill_{name}_")
+
+
+@pytest.mark.parametrize("number", [1, 9, 10, 999])
+def test_the_parts_of_a_program_are_called_as_the_program(number):
+    for name in ("panel", "x" * 22, "x" * 24):
+        called = part_name(name, number)
+        assert len(called) <= 24
+        assert called.endswith(f"_{number}")
+    assert part_name("panel", 12) == "panel_12"
+    assert part_name("x" * 23 + "y", number) != part_name("x" * 24, number)
 
 
 def test_a_given_name(published, plan_of, krl):
-    assert krl.read(export(plan_of(published(1)), name="left wing").text).name == "left_wing"
+    assert krl.read(export(plan_of(published(1)), name="left_wing").text).name == "left_wing"
+    assert krl.read(export(plan_of(published(1)), name="left wing").text).name.startswith("left_wing_")
 
 
 IDS = ["A1\nPTP {A1 0}", "Bohrung Ø4 °", "x;%{PE}%R ;ENDFOLD", "tab\there\r\n\x00", "é" * 200, "ENDFOLD\u2028END"]
@@ -165,10 +217,114 @@ def test_no_id_gets_out_of_its_comment(hole_id, published, plan_of, krl, spoil):
         assert "%{" not in line
 
 
-def test_two_ids_alike_in_ascii_are_distinguished_by_their_number(published, plan_of, krl, spoil):
-    holes = [spoil(published(3), hole=spoil(published(3).hole, id=hole_id)) for hole_id in ("穴", "孔")]
-    folds = krl.read(export(plan_of(*holes)).text).folds
-    assert [fold for fold in folds if fold.startswith("Hole")] == ["Hole 1 of 2: ?", "Hole 2 of 2: ?"]
+FAR = "WING-LH/UPPER-SKIN/RIB-07/STRINGER-12/ROW-03/FASTENER-POSITION-0001"
+ALIKE_IDS = [
+    "穴",
+    "孔",
+    "?",
+    "é",
+    "e",
+    "a  b",
+    "a b",
+    "a%b",
+    "a percentb",
+    "{1}",
+    "(1)",
+    "x" * 80,
+    "x" * 81,
+    FAR,
+    FAR[:-1] + "2",
+]
+
+
+def test_no_two_ids_become_one_in_a_comment():
+    made = [label(hole_id) for hole_id in ALIKE_IDS]
+    assert len(set(made)) == len(ALIKE_IDS)
+    for called in made:
+        assert re.fullmatch("[ -~]{1,60}", called)
+    assert label(FAR) == "WING-LH/UPPER-SKIN/RIB-...-03/FASTENER-POSITION-0001 ~" + digest(FAR)
+    assert label("R0C3") == "R0C3"
+
+
+def test_holes_are_called_the_same_wherever_the_program_names_them(published, plan_of, krl, spoil):
+    """By their number in the plan and one name for each, though comments are ASCII and of 100 characters."""
+    ids = ("穴", "孔", FAR, FAR[:-1] + "2")
+    holes = [spoil(published(3), hole=spoil(published(3).hole, id=hole_id)) for hole_id in ids]
+    holes[0], holes[2] = spoil(holes[0], verified=None), spoil(holes[2], verified=None)
+    exported = export(plan_of(*holes), skip_failed=True)
+    program = krl.read(exported.text)
+    assert [fold for fold in program.folds if fold.startswith("Hole")] == [
+        f"Hole 2 of 4: {label(ids[1])}", f"Hole 4 of 4: {label(ids[3])}"
+    ]  # fmt: skip
+    head = " ".join(" ".join(program.comments).split())
+    assert f"left out: holes {label(ids[0])}, {label(ids[2])}" in head
+    for left_out in (ids[0], ids[2]):
+        assert f"hole {label(left_out)}: left out of the program: it was not verified" in head
+
+
+def long_ids(tmp_path, plan_of, published, spoil):
+    """A plan of two holes whose ids differ behind the 60th character, the first without a motion; and its program."""
+    last = spoil(published(3), hole=spoil(published(3).hole, id=FAR[:-1] + "2"))
+    first = spoil(last, hole=spoil(last.hole, id=FAR), status="infeasible", motion=None, score=None, verified=None)
+    plan = tmp_path / "long.json"
+    write_plan(plan_of(first, last), plan)
+    return plan
+
+
+def test_the_hole_that_is_left_out_is_known_from_the_one_that_is_drilled(tmp_path, plan_of, published, spoil, capsys):
+    plan, program = long_ids(tmp_path, plan_of, published, spoil), tmp_path / "long.src"
+    assert main(["export", str(plan), "--skip-failed", "-o", str(program)]) == 0
+    text = program.read_text()
+    assert f";FOLD Hole 2 of 2: {label(FAR[:-1] + '2')}" in text
+    capsys.readouterr()
+    main(["check", str(plan), "--certify", "--program", str(program), "--json"])
+    proofs = json.loads(capsys.readouterr().out)["holes"]
+    assert proofs[0]["certificate"] is None
+    assert proofs[1]["certificate"]["verdict"] == "certified"
+
+
+def exported_beside(plan, name=None):
+    return main(["export", str(plan), *(("-o", str(name)) if name else ())])
+
+
+def test_no_export_replaces_the_program_of_another_plan(tmp_path, plan_of, published, capsys):
+    """Nor where the two names differ in capitals alone, which neither a controller nor Windows would notice."""
+    first, second = tmp_path / "first.json", tmp_path / "second.json"
+    write_plan(plan_of(published(1), name="panel"), first)
+    write_plan(plan_of(published(3), name="Panel"), second)
+    assert exported_beside(first) == 0
+    program = tmp_path / "panel.src"
+    kept = program.read_bytes()
+    assert b"; Plan file " in kept
+    capsys.readouterr()
+    assert exported_beside(second) == 2
+    said = capsys.readouterr().err
+    assert "panel.src" in said
+    assert "not known to be a program of this plan; -o FILE names another" in " ".join(said.split())
+    assert program.read_bytes() == kept
+    assert not (tmp_path / "Panel.src").exists() or os.path.samefile(tmp_path / "Panel.src", program)
+
+    write_plan(plan_of(published(1), published(3), name="panel"), first)  # planned again, in the same file
+    assert exported_beside(first) == 0
+    assert program.read_bytes() != kept
+    assert exported_beside(second, program) == 0
+    assert exported_beside(first) == 2
+
+
+def test_a_file_of_somebody_else_is_not_replaced(tmp_path, plan_of, published):
+    plan = tmp_path / "plan.json"
+    write_plan(plan_of(published(1), name="panel"), plan)
+    (tmp_path / "PANEL.SRC").write_bytes(b"DEF PANEL ( )\r\nEND\r\n\xff")
+    assert exported_beside(plan) == 2
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["PANEL.SRC", "plan.json"]
+
+
+def test_long_names_that_end_otherwise_are_two_programs(tmp_path, plan_of, published):
+    for station in (100, 200):
+        plan = tmp_path / f"{station}.json"
+        write_plan(plan_of(published(1), name=f"panel_upper_skin_station_{station}"), plan)
+        assert exported_beside(plan) == 0
+    assert len(list(tmp_path.glob("panel_upper_skin_*.src"))) == 2
 
 
 def test_the_head_says_what_an_operator_needs(published, plan_of, krl):

@@ -9,6 +9,8 @@ from zerorev.report.words import terminal
 
 __all__ = ["export"]
 
+INSTEAD = "-o FILE names another, or this one to replace it"
+
 
 @app.command
 def export(plan: Path, /, *, controller: str = "krl", output: Output = None, skip_failed: bool = False) -> int:
@@ -19,7 +21,8 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
     Args:
         plan: The plan file (JSON).
         controller: The robot's controller: krl (KUKA).
-        output: The program's file; by default beside the plan, called as the plan is.
+        output: The program's file, which is replaced if it is there; by default beside the plan, called as the plan is,
+            and only a program of this very plan is replaced.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
     """
     from zerorev.files.checked_files import is_checked
@@ -34,15 +37,23 @@ def export(plan: Path, /, *, controller: str = "krl", output: Output = None, ski
 
         answer = known_as_checked(answer)
 
+    from zerorev.program.dialects import program_file
     from zerorev.program.export import export as to_program
+    from zerorev.program.plan_mark import check_replaceable, plan_mark
     from zerorev.report.words import tables
 
+    mark = plan_mark(answer.name, plan.name)
+    if output is None:
+        check_replaceable(plan.parent, [program_file(answer.name, controller)], mark, INSTEAD)
     name = output.stem if output else None
     with terminal.progress("checking", len(answer.holes)) as progress:
-        program = to_program(answer, controller, skip_failed=skip_failed, name=name, workers=None, progress=progress)
+        program = to_program(
+            answer, controller, skip_failed=skip_failed, name=name, plan_file=plan.name, workers=None, progress=progress
+        )
     main, *others = program.files
     target = output or plan.with_name(main.name)
     terminal.print_lines(tables.finding_lines(program.findings))
+    check_replaceable(target.parent, [file.name for file in others], mark, INSTEAD)
     for file in others:  # the one that is started comes last, when all that it calls is there
         write_text(target.with_name(file.name), file.text)
     write_text(target, main.text)

@@ -110,8 +110,8 @@ def identify(
 
 def _write(meant: PlannedHole, target: Path) -> int:
     from zerorev.files.output import write_text
+    from zerorev.program.krl.names import identifier
     from zerorev.program.krl.sweeps import sweeps_to_krl
-    from zerorev.program.krl.text import identifier
     from zerorev.program.sweeps import sweeps_of
 
     found = sweeps_of(meant.drilling, meant.motion)

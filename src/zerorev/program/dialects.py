@@ -10,7 +10,7 @@ from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.dialect import KRL
 
-__all__ = ["DIALECTS", "dialect_called", "dialect_of", "read_program"]
+__all__ = ["DIALECTS", "dialect_called", "dialect_of", "program_file", "read_program"]
 
 MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -42,6 +42,20 @@ def dialect_of(path: Path) -> Dialect:
     raise InputError(
         f"'{path.suffix}' is the ending of no program", where=str(path), accepted=f"a program that ends in {known}"
     )
+
+
+def program_file(name: str, controller: str) -> str:
+    """How the file of a program is called that is started.
+
+    Args:
+        name: of the plan.
+        controller: one of `DIALECTS`.
+
+    Raises:
+        InputError: an unknown controller.
+    """
+    dialect = dialect_called(controller)
+    return dialect.program_name(name) + dialect.suffix
 
 
 def read_program(path: Path) -> WrittenProgram:

@@ -47,6 +47,7 @@ def export(
     *,
     skip_failed: bool = False,
     name: str | None = None,
+    plan_file: str = "",
     version: str | None = None,
     workers: int | None = 1,
     progress: Callable[[int, int], None] | None = None,
@@ -61,6 +62,8 @@ def export(
         controller: one of `DIALECTS`.
         skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
         name: of the program; by default the plan's.
+        plan_file: name of the file that the plan is in; it stands in the program, so that the next export of the plan
+            may replace it.
         version: of zerorev, for the comment block; by default the installed one.
         workers: processes that check the holes; the program is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
@@ -70,7 +73,9 @@ def export(
         NotExportableError: the robot is another maker's, a hole has no verified motion, or the preflight found an
             error.
     """
-    steps = exporting(plan, controller, skip_failed=skip_failed, name=name, version=version, workers=workers)
+    steps = exporting(
+        plan, controller, skip_failed=skip_failed, name=name, plan_file=plan_file, version=version, workers=workers
+    )
     checked = 0
     while True:
         if progress:
@@ -89,6 +94,7 @@ def exporting(
     *,
     skip_failed: bool = False,
     name: str | None = None,
+    plan_file: str = "",
     version: str | None = None,
     workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
@@ -96,7 +102,7 @@ def exporting(
     dialect = dialect_called(controller)
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
     verified = yield from _verified(plan, workers)
-    program = build_program(verified, skip_failed=skip_failed)
+    program = build_program(verified, skip_failed=skip_failed, plan_file=plan_file)
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))

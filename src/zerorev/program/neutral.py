@@ -20,6 +20,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, named_holes
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.between import moves_between
+from zerorev.program.plan_mark import plan_mark
 from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
 from zerorev.program.ways import Stop, stop_of
 
@@ -83,6 +84,7 @@ class HoleProgram:
         moves: in order.
         corner: index of the move that ends at the turning point of the motion.
         reversals_per_joint: as planned, shape (6,).
+        number: of the hole among all of the plan, as they are listed, from 1.
     """
 
     id: str
@@ -94,6 +96,7 @@ class HoleProgram:
     moves: tuple[LinearMove, ...]
     corner: int
     reversals_per_joint: tuple[int, ...]
+    number: int = 1
 
     @property
     def corner_move(self) -> LinearMove:
@@ -118,6 +121,8 @@ class Program:
         holes: as they are drilled.
         end: joints through which moves of all axes lead away from the last hole [rad], shape (n, 6).
         findings: what was shortened or left out on the way here.
+        listed: how many holes the plan has.
+        plan_file: name of the file that the plan is in; empty: of none.
     """
 
     name: str
@@ -132,15 +137,25 @@ class Program:
     holes: tuple[HoleProgram, ...]
     end: Array
     findings: tuple[Finding, ...] = ()
+    listed: int = 0
+    plan_file: str = ""
+
+    @property
+    def mark(self) -> str:
+        """By which the programs of the plan are known."""
+        return plan_mark(self.name, self.plan_file)
 
 
-def build_program(plan: Plan, *, skip_failed: bool = False, only: Collection[str] | None = None) -> Program:
+def build_program(
+    plan: Plan, *, skip_failed: bool = False, only: Collection[str] | None = None, plan_file: str = ""
+) -> Program:
     """Make the moves of a plan.
 
     Args:
         plan: verified, without error findings.
         skip_failed: leave out the holes that must not be exported, and say so in a finding, instead of refusing.
         only: ids of the holes that are wanted; None: all.
+        plan_file: name of the file that the plan is in; empty: of none.
 
     Raises:
         NotExportableError: a hole that was not verified, has an error finding or has no motion; with `skip_failed`,
@@ -158,7 +173,11 @@ def build_program(plan: Plan, *, skip_failed: bool = False, only: Collection[str
     findings = _left_out(plan, refused)
     stops = [_stop(plan, hole) for hole in kept]
     ways, end = _between(plan, stops)
-    holes = [_hole_program(plan, *each) for each in zip(kept, stops, ways, strict=True)]
+    numbers = {hole.hole.id: number for number, hole in enumerate(plan.holes, start=1)}
+    holes = [
+        replace(_hole_program(plan, hole, stop, way), number=numbers[hole.hole.id])
+        for hole, stop, way in zip(kept, stops, ways, strict=True)
+    ]
     findings += [finding for stop in stops for finding in stop.way.findings]
     return Program(
         name=plan.name,
@@ -173,6 +192,8 @@ def build_program(plan: Plan, *, skip_failed: bool = False, only: Collection[str
         holes=tuple(holes),
         end=end,
         findings=tuple(findings),
+        listed=len(plan.holes),
+        plan_file=plan_file,
     )
 
 

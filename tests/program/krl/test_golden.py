@@ -35,4 +35,4 @@ def test_three_positions_on_a_tilted_part_with_a_deeper_corner(published, plan_o
     T[:3, 3] = 0.4, -0.1, 0.3
     holes = [published(n, corner=-1e-3) for n in POSITIONS]
     plan = plan_of(*holes, name="tilted part", T_base_part=T, blend=2e-3, deepen_corner=True, lead_in=3e-3)
-    check("tilted_part", export(plan, version="golden"))
+    check("tilted_part", export(plan, name="tilted_part", version="golden"))

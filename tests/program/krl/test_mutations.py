@@ -182,7 +182,14 @@ def test_what_a_controller_and_an_operator_may_change(exported, tmp_path):
 
 @pytest.mark.parametrize(
     ("called", "file_name", "fits"),
-    [("mutated", "a", True), ("A", "a", True), ("left_wing", "left wing", True), ("b", "a", False), ("a", "", False)],
+    [
+        ("mutated", "a", True),
+        ("A", "a", True),
+        ("left_wing", "left_wing", True),
+        ("left_wing", "left wing", False),
+        ("b", "a", False),
+        ("a", "", False),
+    ],
 )
 def test_the_program_is_called_as_its_plan_or_its_file(called, file_name, fits, plan):
     program = read_krl(export(plan).text.replace("DEF mutated", f"DEF {called}"))

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
+from zerorev.program.krl.names import identifier
 from zerorev.program.krl.read import read_krl
 from zerorev.program.krl.source import alike
-from zerorev.program.krl.text import identifier
 from zerorev.program.krl.write import refuse_other_makers, to_krl
 from zerorev.program.neutral import Program
 

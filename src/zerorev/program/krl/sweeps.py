@@ -7,7 +7,8 @@ from importlib.metadata import version as installed_version
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.program.krl.text import aggregate, clean, comment, fixed, identifier
+from zerorev.program.krl.names import identifier, label
+from zerorev.program.krl.text import aggregate, clean, comment, fixed
 from zerorev.program.krl.write import AXIS_DECIMALS, PTP_ACCELERATION, PTP_SPEED, RULE, refuse_other_makers
 from zerorev.program.sweeps import AMPLITUDE, Sweep, Sweeps
 
@@ -64,7 +65,7 @@ def _head(sweeps: Sweeps, version: str) -> list[str]:
     facts = (
         ("Robot     ", f"{robot.manufacturer} {robot.model} ({robot.name})"),
         ("Tool      ", sweeps.drilling.tool.name),
-        ("Posture   ", f"where the motion of hole {clean(sweeps.drilling.hole.id)} begins"),
+        ("Posture   ", f"where the motion of hole {label(sweeps.drilling.hole.id)} begins"),
         ("Sweeps    ", f"{len(sweeps.sweeps)}, each axis alone, {degrees:.0f} deg to either side"),
         ("Tip       ", f"{tip} [mm], robot base"),
         ("Lasts     ", f"some {lasting / 60 + 1:.0f} minutes"),

@@ -1,4 +1,4 @@
-"""The letters and numbers of KRL: identifiers, comments, fixed decimals, and KUKA's angles A, B, C."""
+"""The letters and numbers of KRL: comments, fixed decimals, and KUKA's angles A, B, C."""
 
 from __future__ import annotations
 
@@ -17,36 +17,15 @@ __all__ = [
     "degrees",
     "fixed",
     "frame_angles",
-    "identifier",
+    "in_ascii",
     "settled",
     "turn_about_x",
 ]
 
-LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
 LINE = 100
 POLE = 1e-9  # below this length across Z an axis points straight up or down, for the angle A, which is then undefined
 
-# words of the language, and modules that every controller has: a program so called would not load, or replace them
-_WORDS = """
-AND ANIN ANOUT AXIS BAS BOOL BRAKE B_AND B_EXOR B_NOT B_OR CASE CAST_FROM CAST_TO CCLOSE CELL CHANNEL CHAR CIRC
-CIRC_REL CONFIG CONFIRM CONST CONTINUE COPEN CREAD CWRITE DECL DEF DEFAULT DEFDAT DEFFCT DIGIN DO E6AXIS E6POS ELSE
-END ENDDAT ENDFCT ENDFOR ENDIF ENDLOOP ENDSPLINE ENDSWITCH ENDWHILE ENUM EXIT EXOR EXT EXTFCT FALSE FOR FRAME GLOBAL
-GOTO HALT IF IMPORT INT INTERRUPT IR_STOPM IS LIN LIN_REL LOOP MACHINE NOT OFF ON OR P00 POS PRIO PTP PTP_REL PUBLIC
-PULSE REAL REPEAT RESUME RETURN ROBCOR SCIRC SIGNAL SLIN SPLINE SPS SPTP SREAD STRUC SWITCH SWRITE SYNC THEN TO
-TRIGGER TRUE UNTIL WAIT WHEN WHILE
-"""
-RESERVED = frozenset(_WORDS.split())
-
-
 MEANT_OTHERWISE = str.maketrans({"%": " percent", "{": "(", "}": ")"})
-
-
-def identifier(name: str) -> str:
-    """A KRL name made of any text: letters, digits and `_`, a letter first, at most 24 characters, no reserved word."""
-    kept = re.sub(r"[^A-Za-z0-9_]+", "_", _ascii(name)).strip("_")
-    if not kept or not kept[0].isalpha() or kept.upper() in RESERVED:
-        kept = f"drill_{kept}"
-    return kept[:LONGEST_NAME].rstrip("_")
 
 
 def comment(text: str, *, first: str = "", longest: int = 0) -> list[str]:
@@ -58,16 +37,20 @@ def comment(text: str, *, first: str = "", longest: int = 0) -> list[str]:
     plain = clean(text)
     if longest and len(plain) > longest:
         plain = plain[: longest - 3] + "..."
-    return textwrap.wrap(plain, LINE, initial_indent=f"; {first}", subsequent_indent="; " + " " * len(first)) or [";"]
+    indents = f"; {first}", "; " + " " * len(first)
+    # an id with hyphens stays in one piece
+    return textwrap.wrap(
+        plain, LINE, initial_indent=indents[0], subsequent_indent=indents[1], break_on_hyphens=False
+    ) or [";"]
 
 
 def clean(text: str) -> str:
     """A text on one line, in printable ASCII, without the characters that mean something in a KRL comment."""
-    one_line = " ".join(_ascii(text).split())
+    one_line = " ".join(in_ascii(text).split())
     return re.sub(r"[^ -~]", "?", one_line).translate(MEANT_OTHERWISE)
 
 
-def _ascii(text: str) -> str:
+def in_ascii(text: str) -> str:
     """Accents taken off their letters, everything else beyond ASCII made a question mark."""
     spread = unicodedata.normalize("NFKD", text)
     return "".join(c for c in spread if not unicodedata.combining(c)).encode("ascii", "replace").decode("ascii")

@@ -7,6 +7,7 @@ act over a lever of a metre or more and have more; a REAL of the controller hold
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from importlib.metadata import version as installed_version
 
 import numpy as np
@@ -14,20 +15,20 @@ import numpy as np
 from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
+from zerorev.program.krl.names import LONGEST_ID, identifier, label
 from zerorev.program.krl.text import (
     aggregate,
     axis_angles,
-    clean,
     comment,
     degrees,
     fixed,
     frame_angles,
-    identifier,
     settled,
     turn_about_x,
 )
 from zerorev.program.neutral import HoleProgram, LinearMove, Program
 from zerorev.program.notes import notes, turn_speed
+from zerorev.program.plan_mark import MARK
 
 __all__ = ["to_krl"]
 
@@ -35,7 +36,6 @@ PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves 
 LEAST_TURN_SPEED = 200.0  # [deg/s]
 TURN_SPEED_RESERVE = 1.2
 FRAME_ANGLE_DECIMALS, AXIS_DECIMALS, SPEED_DECIMALS = 6, 5, 6
-LONGEST_ID = 60
 RULE = "; " + "-" * 98
 
 SAFETY = (
@@ -82,8 +82,8 @@ def to_krl(
         "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
         *_settings(program),
     ]
-    for number, hole in enumerate(program.holes, start=1):
-        lines += _hole(hole, f"Hole {number} of {len(program.holes)}")
+    for hole in program.holes:
+        lines += _hole(hole, f"Hole {hole.number} of {program.listed}")
     if len(program.end):
         lines += [";FOLD Away from the last hole", *(_ptp(joints) for joints in program.end), ";ENDFOLD"]
     return "\n".join([*lines, "END", ""])
@@ -117,16 +117,30 @@ def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list
         ("Blend     ", f"{blend} at the target{deepened}"),
         ("Holes     ", f"{len(program.holes)}, with {reversals} joint reversals in all"),
     )
-    lines = [RULE, *comment(f"Written by zerorev {version}")]
+    ids = {hole.id for hole in program.holes} | {finding.hole for finding in findings if finding.hole is not None}
+    lines = [RULE, *comment(f"Written by zerorev {version}"), *_mark(program)]
     for first, text in facts:
         lines += comment(text, first=first, longest=3 * LONGEST_ID)
     for finding in findings:
-        at = f"hole {clean(finding.hole)[:LONGEST_ID]}: " if finding.hole is not None else ""
-        lines += comment(at + finding.message, first=f"{finding.level}: ".ljust(10))
+        at = f"hole {label(finding.hole)}: " if finding.hole is not None else ""
+        lines += comment(at + _with_labels(finding.message, ids), first=f"{finding.level}: ".ljust(10))
     lines.append(";")
     for text in (*SAFETY, *FRAMES):
         lines += comment(text, first="- ")
     return [*lines, RULE]
+
+
+def _mark(program: Program) -> list[str]:
+    """Whose program this is, as `plan_mark` finds it again."""
+    return comment(f"{program.mark} {program.plan_file}", first=MARK) if program.plan_file else []
+
+
+def _with_labels(message: str, ids: Iterable[str]) -> str:
+    """A message with ids that a comment cannot have as they are called as elsewhere in the program."""
+    for hole_id in sorted(ids, key=len, reverse=True):
+        if (called := label(hole_id)) != hole_id:
+            message = message.replace(hole_id, called)
+    return message
 
 
 def _settings(program: Program) -> list[str]:
@@ -157,7 +171,7 @@ def _hole(hole: HoleProgram, title: str) -> list[str]:
     material or the fixture; an absolute LIN only runs what is left. Between the linear moves stand nothing but
     assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
     """
-    lines = [f";FOLD {title}: {clean(hole.id)[:LONGEST_ID]}", *_about(hole)]
+    lines = [f";FOLD {title}: {label(hole.id)}", *_about(hole)]
     lines += [_ptp(joints) for joints in (*hole.way, hole.start.joints)]
     A, B = axis_angles(hole.axis)
     feed, radius = None, ""
