@@ -5,13 +5,14 @@ A map on a grid and one at given points are read into the same form, a row per t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from zerorev.errors import InputError
+from zerorev.maps.frames import frame_of
 from zerorev.model._arrays import Array
 from zerorev.model.quantity import Quantity, quantities
 
@@ -42,12 +43,14 @@ class Field:
         target: [mm], shape (T, 3).
         direction: unit vectors, shape (D, 3).
         value: in the unit of the quantity, NaN where there is none, shape (T, D).
+        T_base_part: the frame of targets and directions, shape (4, 4), translation [m].
     """
 
     quantity: Quantity
     target: Array
     direction: Array
     value: Array
+    T_base_part: Array = field(default_factory=lambda: np.eye(4), kw_only=True)
 
     @property
     def best(self) -> Array:
@@ -101,7 +104,8 @@ def cells_of(found: Dataset) -> Cells:
         value = np.where(value >= 0, value, np.nan)
     branch = flat("branch").astype(np.int8) if "branch" in found else np.full(shape, -1, dtype=np.int8)
     psi = [flat(name).astype(float) if name in found else np.full(shape, np.nan) for name in SPINS]
-    return Cells(quantity, np.stack(axes, axis=-1), direction, value, branch, np.stack(psi, axis=-1))
+    spins, T = np.stack(psi, axis=-1), frame_of(found)
+    return Cells(quantity, np.stack(axes, axis=-1), direction, value, branch, spins, T_base_part=T)
 
 
 def best_cells(cells: Cells, count: int) -> list[tuple[int, int]]:
@@ -160,6 +164,8 @@ def difference(first: Field, second: Field) -> Difference:
             f"one holds {first.quantity.variable}, the other {second.quantity.variable}",
             accepted="two maps of one quantity",
         )
+    if not np.allclose(first.T_base_part, second.T_base_part, rtol=0, atol=SAME_MM / 1e3):
+        raise InputError("the maps lie in different frames", accepted="two maps around jobs with one part_frame")
     a, b = _common(first.target, second.target, SAME_MM)
     c, d = _common(first.direction, second.direction, SAME_DIRECTION)
     if not a.size or not c.size:
@@ -171,11 +177,13 @@ def difference(first: Field, second: Field) -> Difference:
 
 
 def mirror_in_y(cells: Field) -> Difference | None:
-    """The map beside its own mirror image in Y, on the cells that have one; None where none has.
+    """The map beside its own mirror image in Y, on the cells that have one; None where none has, or in a part frame.
 
     Only a cell of Y > 0, or of Y = 0 and a direction that leans to Y > 0, is set beside its mirror, so that no pair is
     counted twice; a cell that is its own mirror is left out.
     """
+    if not np.array_equal(cells.T_base_part, np.eye(4)):
+        return None
     turned = np.array([1.0, -1.0, 1.0])
     a, b = _common(cells.target, cells.target * turned, SAME_MM)
     c, d = _common(cells.direction, cells.direction * turned, SAME_DIRECTION)

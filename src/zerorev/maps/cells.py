@@ -16,7 +16,7 @@ from zerorev.motion.joint_path import turns_within
 from zerorev.search.free_deepest import SEGMENTS
 from zerorev.search.straight import target_spins
 
-__all__ = ["KNOTS", "STATUS", "Block", "answer", "columns_of"]
+__all__ = ["KNOTS", "SPINS", "STATUS", "Block", "answer", "columns_of"]
 
 SPINS = 240  # at the target in one turn, by which reach is judged
 KNOTS = 2 * SEGMENTS + 1  # breakpoints of a motion on free legs, at most

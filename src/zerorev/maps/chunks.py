@@ -67,4 +67,4 @@ class Chunks:
         cells = np.ravel_multi_index([each.ravel() for each in index], self.task.shape)
         places, directions = np.divmod(cells, len(self.task.directions))
         target_mm = self.task.target_mm(places)
-        return Block(number, cells, target_mm / 1e3, self.task.directions[directions], self.task.in_base(target_mm))
+        return Block(number, cells, target_mm / 1e3, self.task.drills[directions], self.task.in_base(target_mm))

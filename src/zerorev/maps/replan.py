@@ -11,6 +11,7 @@ from zerorev.errors import InputError
 from zerorev.files.conversion import robot_from, tool_from
 from zerorev.files.schema import RobotForm, ToolForm
 from zerorev.files.units import m, rad, rad_per_m
+from zerorev.maps.frames import frame_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.map_task import Question
@@ -86,7 +87,7 @@ def job_of(found: Dataset, cells: list[dict[str, int]]) -> Job:
     question = question_of(found)
     holes = tuple(_hole(question, found, index) for index in cells)
     # the motion ends at the stroke that the map states, so the corner is where it was looked for
-    return Job(question.robot, question.tool, holes, question.settings, name="map")
+    return Job(question.robot, question.tool, holes, question.settings, frame_of(found), name="map")
 
 
 def _hole(question: Question, found: Dataset, index: dict[str, int]) -> Hole:
@@ -102,10 +103,12 @@ def _hole(question: Question, found: Dataset, index: dict[str, int]) -> Hole:
         np.array([float(cell[name]) for name in names])
         for names in (("x_mm", "y_mm", "z_mm"), ("direction_x", "direction_y", "direction_z"))
     )
+    T = frame_of(found)
+    target, direction = m(target) @ T[:3, :3].T + T[:3, 3], direction @ T[:3, :3].T
     name = "cell " + " ".join(f"{key}{at}" for key, at in full.items())
     profile, branch = _profile(cell, question), int(cell["branch"])
     depth = None if profile is None else float(profile.standoff[0])
-    hole = question.hole(m(target), direction, name, depth)
+    hole = question.hole(target, direction, name, depth)
     return replace(hole, profile=profile, branch=branch if branch >= 0 else None)
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from zerorev.errors import InputError, OutputError, ZerorevError
 from zerorev.files.conversion import robot_data, settings_data, tool_data
+from zerorev.files.moved_job import frame_text
 from zerorev.files.output import as_output_error, check_folder, write_whole_folder
 from zerorev.files.units import mm, plain
 from zerorev.files.validation import inside
@@ -206,16 +207,17 @@ def _skeleton(task: MapTask) -> Dataset:
 
     question = task.question
     names = ("x", "y", "z")
+    frame = "base frame" if task.of_base else "part frame"
     coordinates: dict[str, Any] = {
         f"{name}_mm": (
             (name,) if task.ids is None else ("point",),
             axis,
-            {"units": "mm", "long_name": f"{name.upper()} of the target, base frame"},
+            {"units": "mm", "long_name": f"{name.upper()} of the target, {frame}"},
         )
         for name, axis in zip(names, task.axes, strict=True)
     }
     for n, name in enumerate(names):
-        attributes = {"units": "1", "long_name": f"{name.upper()} of the direction into the material, base frame"}
+        attributes = {"units": "1", "long_name": f"{name.upper()} of the direction into the material, {frame}"}
         coordinates[f"direction_{name}"] = (("direction",), task.directions[:, n], attributes)
     settings = settings_data(question.settings)
     reference = question.psi_reference
@@ -234,6 +236,8 @@ def _skeleton(task: MapTask) -> Dataset:
         head["depth_mm"] = plain(float(mm(question.depth)))
     if quantity(question.quantity).seeded:
         head["seed"] = question.seed
+    if not task.of_base:
+        head["part_frame"] = frame_text(task.T_base_part)
     if task.ids is not None:
         head["ids"] = list(task.ids)
     return xarray.Dataset(coords=coordinates, attrs=head)

@@ -84,16 +84,18 @@ class MapTask:
         axes: coordinates of a box of targets [mm], one array each for x, y and z; or of points, shape (3, P).
         directions: unit vectors into the material, shape (D, 3).
         ids: of the points; None for a box.
+        T_base_part: the frame of axes and directions, shape (4, 4), translation [m]; by default the base frame.
     """
 
     question: Question
     axes: tuple[Array, Array, Array]
     directions: Array
     ids: tuple[str, ...] | None = None
+    T_base_part: Array = field(default_factory=lambda: np.eye(4))
 
     def __post_init__(self) -> None:
         """Check that the spin can be counted in every direction, and that the robot does not stand in every target."""
-        for n, direction in enumerate(self.directions):
+        for n, direction in enumerate(self.drills):
             self.question.hole(self.target_mm(0) / 1e3, direction, f"directions[{n}]")
         if self.base_radius_mm and self.cells_in_base == self.cells:
             raise InputError("every target lies inside the robot's base", where="targets", accepted=self.outside)
@@ -115,10 +117,21 @@ class MapTask:
         return int(np.prod(self.shape))
 
     def target_mm(self, places: npt.NDArray[np.int64] | int) -> Array:
-        """Targets [mm] by their numbers, shape (..., 3)."""
+        """Targets [mm] in the base frame by their numbers, shape (..., 3)."""
         where = np.unravel_index(np.asarray(places), self.shape[:-1])
         index = where if self.ids is None else where * 3
-        return np.stack([axis[at] for axis, at in zip(self.axes, index, strict=True)], axis=-1)
+        targets = np.stack([axis[at] for axis, at in zip(self.axes, index, strict=True)], axis=-1)
+        return targets if self.of_base else targets @ self.T_base_part[:3, :3].T + self.T_base_part[:3, 3] * 1e3
+
+    @property
+    def of_base(self) -> bool:
+        """Whether the part frame is the base frame."""
+        return bool((self.T_base_part == np.eye(4)).all())
+
+    @property
+    def drills(self) -> Array:
+        """The directions in the base frame, shape (D, 3)."""
+        return self.directions if self.of_base else self.directions @ self.T_base_part[:3, :3].T
 
     @property
     def base_radius_mm(self) -> float:
@@ -134,8 +147,8 @@ class MapTask:
     @cached_property
     def cells_in_base(self) -> int:
         """How many cells have a target inside the robot's base."""
-        if self.ids is not None:
-            inside = self.in_base(np.stack(self.axes, axis=-1)).sum()
+        if self.ids is not None or not self.of_base:
+            inside = self.in_base(self.target_mm(np.arange(self.cells // len(self.directions)))).sum()
         else:
             x, y, z = self.axes
             below = (z < self.question.robot.arm.c1 * 1e3).sum()

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from zerorev.errors import InputError
 from zerorev.files.output import make_folder, write_bytes
 from zerorev.maps.answers import Cells, best_cells, cells_of
+from zerorev.maps.frames import frame_of, in_frame
 from zerorev.maps.planes import Across, Plane, is_grid, planes_of
 from zerorev.maps.replan import question_of
 from zerorev.model._arrays import Array
@@ -196,9 +197,9 @@ def _wide_planes(found: Dataset, direction: int, across: Across | None) -> tuple
 
 
 def robot_at_home(found: Dataset) -> Array:
-    """Places along the arm of a map's robot at home, with its tool [mm], shape (8, 3)."""
+    """Places along the arm of a map's robot at home, with its tool [mm], in the frame of the map, shape (8, 3)."""
     question = question_of(found)
-    return skeleton(question.robot, question.tool, home(question.robot)) * 1e3
+    return in_frame(frame_of(found), skeleton(question.robot, question.tool, home(question.robot))) * 1e3
 
 
 def _robot_at_best(found: Dataset, cells: Cells) -> Array | None:
@@ -207,10 +208,12 @@ def _robot_at_best(found: Dataset, cells: Cells) -> Array | None:
     if not best or cells.branch[best[0]] < 0:
         return None
     (row, column), question = best[0], question_of(found)
-    hole = question.hole(cells.target[row] / 1e3, cells.direction[column])
+    T = cells.T_base_part
+    target, direction = cells.target[row] / 1e3 @ T[:3, :3].T + T[:3, 3], cells.direction[column] @ T[:3, :3].T
+    hole = question.hole(target, direction)
     psi = float(np.deg2rad(cells.psi_deg[row, column, 1]))
     joints = joints_at(Drilling(question.robot, question.tool, hole), psi, int(cells.branch[row, column]))
-    return None if joints is None else skeleton(question.robot, question.tool, joints) * 1e3
+    return None if joints is None else in_frame(T, skeleton(question.robot, question.tool, joints)) * 1e3
 
 
 def _row_of(cells: Cells, at: Sequence[float] | None) -> int:

@@ -204,10 +204,11 @@ def slice_of(found: Dataset, direction: int = 0, across: Across | None = None, a
         raise InputError(f"{rows.size:,} cells" if rows.size else f"plane {at}", where="plane", accepted=accepted)
     order = [name for name in ("point", *AXES, "direction") if name in found.sizes]
     status = found["status"].transpose(*order).values.reshape(cells.value.shape)[rows, direction]
-    target = cells.target[rows]
+    target, T = cells.target[rows], cells.T_base_part
+    edges = m(_edges(target, across, drill)) @ T[:3, :3].T
     return MapSlice(
-        found, direction, across, at, cells.quantity, drill, np.asarray(m(target)), value[rows],
-        status.astype(np.int8), rows, np.asarray(m(_edges(target, across, drill))),
+        found, direction, across, at, cells.quantity, drill @ T[:3, :3].T, m(target) @ T[:3, :3].T + T[:3, 3],
+        value[rows], status.astype(np.int8), rows, np.asarray(edges),
     )  # fmt: skip
 
 

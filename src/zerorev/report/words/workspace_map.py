@@ -29,7 +29,8 @@ def heading(found: Dataset) -> str:
     if "depth_mm" in found.attrs:
         legs += f", {found.attrs['depth_mm']:g} mm deep"
     size = f"{_count(len(cells.target), 'target')}, {_count(len(cells.direction), 'direction')}"
-    return "   |   ".join(part for part in (", ".join(names), legs, size))
+    frame = ("part frame",) if "part_frame" in found.attrs else ()
+    return "   |   ".join((", ".join(names), legs, size, *frame))
 
 
 def show_lines(found: Dataset) -> list[str]:
@@ -42,6 +43,8 @@ def show_lines(found: Dataset) -> list[str]:
         f"{quantity.title}: {heading(found)}",
         f"{count:,} of {of:,} cells ({count / of * 100:.3g} %) {what}" + _range(cells),
     ]
+    if frame := found.attrs.get("part_frame"):
+        lines.append(f"part frame: {{xyz_mm: {frame['xyz_mm']}, rpy_deg: {frame['rpy_deg']}}}")
     if why := _why_none(found):
         lines.append(f"the others: {why}")
     lines += [f"best: {_cell(cells, *place)}" for place in best_cells(cells, SHOWN_BEST)]
