@@ -61,7 +61,10 @@ def answer(axes, margins=(0.02, 0.01)):
     grid = tuple(freedom.values(axis, 3) for axis in range(4))
     room = np.array([[-0.01, 0.02]] * 4) if min(margins) >= 0 else None
     found = np.full([values.size for values in grid], np.nan)
-    return freedom, Placement(place, np.array(margins), np.array([-0.05, 0.0]), grid, found, room, shown, 17, True)
+    stands = np.array([-0.05, 0.0])
+    return freedom, Placement(
+        place, np.array(margins), stands, grid, found, room, slices=shown, strokes=17, finished=True
+    )
 
 
 def text_of(*shown):

@@ -47,8 +47,8 @@ class Shown:
         self._worst: tuple[tuple[int, float], HolePlan] | None = None
         self._figures = {name: _Figure() for name in ("travel [deg]", "slowest joint [deg/mm]", "deepest [mm]",
                                                       "deepest beyond depth [mm]", "lost motion [mm]",
-                                                      "certified within [mm]")}  # fmt: skip
-        self.sound, self.certified = not any(finding.level == "error" for finding in plan.findings), True
+                                                      "certified within [mm]", "time [s]")}  # fmt: skip
+        self.sound, self.certified = not any(finding.level == "error" for finding in self._findings), True
         for answer in answers:
             self.add(answer)
 
@@ -79,7 +79,9 @@ class Shown:
 
     def say(self, findings: Iterable[Finding]) -> None:
         """Take findings of the whole plan that are known only at its end."""
-        self._findings += findings
+        found = tuple(findings)
+        self._findings += found
+        self.sound &= not any(finding.level == "error" for finding in found)
 
     def _values(self, answer: HolePlan) -> Iterator[tuple[str, float]]:
         if answer.score is not None:
@@ -88,6 +90,8 @@ class Shown:
             yield "slowest joint [deg/mm]", float(np.rad2deg(slow[0]) / 1e3)
         if answer.lost_motion is not None:
             yield "lost motion [mm]", answer.lost_motion.at_tip * 1e3
+        if answer.cycle_time is not None:
+            yield "time [s]", answer.cycle_time
         if answer.certified_within is not None:
             yield "certified within [mm]", answer.certified_within.position * 1e3
         if answer.deepest is not None:

@@ -34,6 +34,7 @@ class HoleRow(NamedTuple):
         travel: of all joints [deg].
         margin: by how much the deepest stroke without a reversal is deeper than the hole [mm].
         findings: how many warnings and errors.
+        time: of the hole's own moves [s].
     """
 
     id: str
@@ -46,6 +47,7 @@ class HoleRow(NamedTuple):
     travel: float | None = None
     margin: float | None = None
     findings: int = 0
+    time: float | None = None
 
 
 def hole_row(hole: Hole, answer: HolePlan | None, T_base_part: Array) -> HoleRow:
@@ -67,6 +69,7 @@ def hole_row(hole: Hole, answer: HolePlan | None, T_base_part: Array) -> HoleRow
         travel=None if score is None else float(deg(score.travel)),
         margin=None if answer.deepest is None else float(mm(answer.deepest - hole.depth)),
         findings=sum(finding.level in GRAVE for finding in hole_findings(answer)),
+        time=answer.cycle_time,
     )
 
 

@@ -36,7 +36,7 @@ MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding
 
 
 def plan_table(plan: Plan) -> Table:
-    """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, outcome of the check.
+    """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, time, outcome of the check.
 
     And the predicted lost motion, where there is one at all.
     """
@@ -49,6 +49,7 @@ def plan_table(plan: Plan) -> Table:
     table.add_column(Text("spins\n[deg]"), justify="right")
     table.add_column(Text("slowest joint\n[deg/mm]"), justify="right")
     table.add_column(Text("deepest\n[mm]"), justify="right")
+    table.add_column(Text("time\n[s]"), justify="right")
     if weighed:
         table.add_column(Text(HEADING), justify="right")
     table.add_column(Text("verified"))
@@ -62,7 +63,7 @@ def plan_table(plan: Plan) -> Table:
 def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
     motion, score = hole.motion, hole.score
     if motion is None or score is None:
-        cells = ("infeasible", *"––––", _deepest(hole), "–")
+        cells = ("infeasible", *"––––", _deepest(hole), *"––")
         return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
     before = "?" if hole.baseline is None else str(hole.baseline.reversals)
     spins = "  ".join(_number(spin, 2) for spin in np.rad2deg(motion.profile.psi))
@@ -74,6 +75,7 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         Text(spins),
         Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
         Text(_deepest(hole)),
+        Text("–" if hole.cycle_time is None else _number(hole.cycle_time, 1)),
         hole_check(hole),
     ]
 

@@ -66,6 +66,8 @@ def options(wide: Mapping[str, int]) -> dict[str, Any]:
             {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
             {**number, "headerName": "Margin [mm]", "field": "margin", ":valueFormatter": one, "width": 98,
              "headerTooltip": "by how much the hole could be deeper without a reversal"},
+            {**number, "headerName": "Time [s]", "field": "time", ":valueFormatter": one, "width": 76,
+             "headerTooltip": "of the hole's own moves at their feeds; the moves between holes come on top"},
             {**number, "headerName": "Findings", "field": "findings", ":valueFormatter": COUNT, "width": 78},
             {**number, "headerName": "Depth [mm]", "field": "depth", "width": 90},
             {"headerName": "Target [mm]", "field": "target", "flex": 3, "minWidth": max(124, wide["target"]),
