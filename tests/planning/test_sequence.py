@@ -11,6 +11,7 @@ import pytest
 import zerorev as zr
 from oracles.holes import random_hole
 from zerorev.kernels import tour
+from zerorev.model._arrays import rotation_rpy, transform
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
 from zerorev.planning.sequence import Member, _chosen, moves_of
@@ -201,3 +202,38 @@ def test_groups_are_drilled_as_they_are_first_named(panel):
     names = {hole.id: hole.group for hole in grouped}
     drilled = [names[hole_id] for hole_id in found.order]
     assert drilled == sorted(drilled)
+
+
+def grid(name, rows):
+    """A square of holes on a tilted plane, in proportion to the reach of a robot, with the thesis' tool as large."""
+    base, robot = zr.read_robot("kuka_kr6_r700_2"), zr.read_robot(name)
+    scale = robot.reach / base.reach
+    tool = zr.Tool.from_mm_deg((100 * scale, 0, 65 * scale), (0, -90, 0))
+    T = transform(rotation_rpy(0, np.deg2rad(-60), 0), scale * np.array([0.48, 0.15, 0.72]))
+    places = scale * np.linspace(-0.09, 0.09, rows)
+    holes = tuple(
+        zr.Hole(f"R{r}C{c}", T[:3, :3] @ [x, y, 0] + T[:3, 3], -T[:3, 2], 0.012 * scale, psi_zero=T[:3, 1])
+        for r, y in enumerate(places) for c, x in enumerate(places)
+    )  # fmt: skip
+    settings = replace(zr.Settings(), proof_boxes=0, min_rate=zr.Settings().min_rate / scale)
+    return zr.Job(robot, tool, holes, settings, T)
+
+
+@pytest.mark.parametrize("name", ["kuka_kr120_r2700_2", "abb_irb4600_60_205"])
+@pytest.mark.parametrize("rows", [pytest.param(5, marks=pytest.mark.long), pytest.param(10, marks=pytest.mark.soak)])
+def test_other_robots_keep_their_posture_as_well(name, rows, record_property):
+    job = grid(name, rows)
+    planned = plan_job(job)
+    alone = plan_job(replace(job, settings=replace(job.settings, posture_freedom=0.0)))
+    assert {hole.score.reversals for hole in planned.holes} == {0}
+    assert not any(finding.kind == "through_part" for finding in planned.all_findings)
+    changes, turned = (
+        [count(plan) for plan in (planned, alone)]
+        for count in (
+            lambda plan: sum(move.changes_posture for move in plan.transitions),
+            lambda plan: float(np.rad2deg(sum(np.abs(np.diff(m.joints, axis=0)).sum() for m in plan.transitions))),
+        )
+    )
+    record_property("measured", f"{name}, {rows * rows} holes: changes of posture {changes}, axes between {turned} deg")
+    assert changes[0] <= 2 < changes[1]
+    assert turned[0] < turned[1] / (4 if rows == 10 else 2)
