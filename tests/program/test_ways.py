@@ -184,3 +184,25 @@ class TestTheProgram:
         assert export(again).text == export(planned).text
         for one, other in zip(moves_of(again), planned.transitions, strict=True):
             np.testing.assert_allclose(one.joints, other.joints, rtol=0, atol=1e-9)
+
+
+@pytest.mark.long
+def test_the_panel_as_it_was_run_before():
+    """Case c01: each hole with its own best motion, straight from one to the next: 5 moves go through the panel.
+
+    So version 0.1.0 planned it, of which a script sampled the tip: at most 179 mm behind the holes' ends, from R0C3 to
+    R0C4. By default none does.
+    """
+    job = zr.read_job(PANEL)
+    as_before = replace(job.settings.without_proof, posture_freedom=0.0, safe_height=0.0)
+    found = plan_job(replace(job, settings=as_before))
+    depth = job.holes[0].depth
+    behind = {(move.start, move.to): -move.clearance - depth for move in found.transitions}
+    through = {pair for pair, far in behind.items() if far > 0}
+    assert len(through) == 5
+    assert behind["R0C3", "R0C4"] == max(behind.values()) == pytest.approx(0.179, abs=0.001)
+    assert through <= {(move.start, move.to) for move in found.transitions if any(
+        finding.kind == "through_part" for finding in move.findings
+    )}  # fmt: skip
+    now = plan_job(replace(job, settings=job.settings.without_proof))
+    assert min(move.clearance for move in now.transitions) > -2e-5
