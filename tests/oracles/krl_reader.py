@@ -13,6 +13,7 @@ from fractions import Fraction
 import numpy as np
 
 FIELDS = {"FRAME": "X Y Z A B C", "AXIS": "A1 A2 A3 A4 A5 A6"}
+OPTIONAL = ("$ACT_TOOL", "$ACT_BASE", "$LOAD")
 LATER = {"PTP": ("$VEL.CP", "$APO.CDIS"), "LIN": ("$APO.CDIS",)}
 KEPT = ("$VEL.CP", "$VEL.ORI1", "$VEL.ORI2", "$APO.CDIS", "$IPO_MODE", "$ORI_TYPE", "$ADVANCE", "$TOOL", "$BASE")
 
@@ -52,6 +53,8 @@ class KrlProgram:
     comments: list[str] = field(default_factory=list)
     folds: list[str] = field(default_factory=list)
     statements: list[str] = field(default_factory=list)  # in order, without comments
+    header: list[str] = field(default_factory=list)
+    calls: list[tuple[int, str]] = field(default_factory=list)  # after how many moves, and what
 
     def holes(self) -> list[list[Move]]:
         """The motions, one list per hole: each begins with the last PTP that leads to it."""
@@ -94,6 +97,7 @@ def read(text: str) -> KrlProgram:
     if not text.isascii() or "\r" in text or "\t" in text:
         raise KrlError("characters that no KRL source should have")
     program, state, declared, ended = None, {}, False, False
+    header, resting = [], False
     for number, whole in enumerate(text.splitlines(), start=1):
         line, _, remark = whole.partition(";")
         line = line.strip()
@@ -108,17 +112,27 @@ def read(text: str) -> KrlProgram:
         if line.startswith("&"):
             if program:
                 raise KrlError(f"line {number}: header after DEF")
+            header.append(line)
             continue
         if match := re.fullmatch(r"DEF ([A-Za-z][A-Za-z0-9_]{0,23}) \( \)", line):
-            program = KrlProgram(match.group(1))
+            program = KrlProgram(match.group(1), header=header)
             continue
         program.statements.append(line)
         if line.startswith(("EXT ", "DECL ")):
             if declared:
                 raise KrlError(f"line {number}: a declaration after a statement")
             continue
-        declared = True
-        if line == "END":
+        declared, waited, resting = True, resting, False
+        if line == "WAIT SEC 0.0":
+            if program.moves and program.moves[-1].blended:
+                raise KrlError(f"line {number}: a blend becomes a stop")
+            resting = True
+        elif re.fullmatch(r"[A-Za-z]\w*\((?: |[^(){}$;]+)\)", line) and not line.startswith("BAS"):
+            if not waited:
+                raise KrlError(f"line {number}: called while the robot may move")
+            program.calls.append((len(program.moves), line))
+            resting = True
+        elif line == "END":
             ended = True
         elif re.fullmatch(r"BAS \(#(INITMOV|VEL_PTP|ACC_PTP),\d+ \)", line):
             if "INITMOV" in line and state:
@@ -127,6 +141,9 @@ def read(text: str) -> KrlProgram:
             state = {**state, match.group(1): value(match.group(1), match.group(2).strip(), number)}
         elif match := re.fullmatch(r"(PTP|LIN) (\{.*\})( C_DIS)?", line):
             kind, target, blended = match.groups()
+            outer = {}
+            if match2 := re.fullmatch(r"\{E6AXIS: (.*?)((?:,E[1-6] -?\d+\.\d+)+)\}", target):
+                target, outer = f"{{AXIS: {match2[1]}}}", dict(part.split() for part in match2[2][1:].split(","))
             if missing := [name for name in KEPT if name not in state and name not in LATER[kind]]:
                 raise KrlError(f"line {number}: {missing} not set")
             if kind == "PTP" and blended:
@@ -134,6 +151,7 @@ def read(text: str) -> KrlProgram:
             if blended and not state.get("$APO.CDIS", 0.0) > 0:
                 raise KrlError(f"line {number}: C_DIS without a radius")
             values = aggregate(target, "AXIS" if kind == "PTP" else "FRAME", number)
+            values |= {name: float(at) for name, at in outer.items()}
             program.moves.append(Move(kind, values, bool(blended), state, number))
         else:
             raise KrlError(f"line {number}: {line}")
@@ -179,8 +197,14 @@ def exact(word: str) -> str | Fraction:
 
 
 def value(name, text, line):
-    if name not in KEPT:
+    if name not in KEPT + OPTIONAL:
         raise KrlError(f"line {line}: {name}")
+    if name == "$LOAD":
+        return text
+    if name == "$BASE" and not text.startswith("{"):
+        variable, _, text = text.partition(":")
+        if not re.fullmatch(r"\$?[A-Z_]+", variable):
+            raise KrlError(f"line {line}: {variable}")
     if name in ("$TOOL", "$BASE"):
         return frame(aggregate(text, "FRAME", line))
     if text.startswith("#"):

@@ -87,11 +87,13 @@ def check(
         remember(text)
     if program is not None:
         from zerorev.program.as_exported import as_exported
+        from zerorev.program.notes import calls
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
             drilled = as_exported(checked.plan, written, dialect, program.stem)
-            checked = replace(checked, plan=certify_program(checked.plan, written, drilled))
+            proven = certify_program(checked.plan, written, drilled)
+            checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *calls(proven.settings))))
     elif certify:
         with terminal.busy("proving"):
             checked = replace(checked, plan=asked.certified(checked.plan))
@@ -128,7 +130,8 @@ def _verdict(answer: Plan, *, certify: bool = False) -> int:
 def _proofs(plan: dict[str, Any], program: str) -> dict[str, Any]:
     """What is proven of a program's holes, without the plan around it: in a plan file it would pass for the plan's."""
     holes = [{key: hole[key] for key in ("id", "verified", "certificate")} for hole in plan["holes"]]
-    return {"format": "zerorev.program_certificate/1", "program": program, "holes": holes}
+    calls = [finding["message"] for finding in plan["findings"] if finding["kind"] == "calls"]
+    return {"format": "zerorev.program_certificate/1", "program": program, "not_examined": calls, "holes": holes}
 
 
 def _show_plan(answer: Plan) -> None:

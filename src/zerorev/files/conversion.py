@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
+from zerorev.model.controller import Call, Calls, ExternalAxis
 from zerorev.model.dynamics import Dynamics, Link, Load
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.profile import Profile
@@ -175,12 +177,42 @@ def settings_from(form: SettingsForm, *, before: bool = False) -> Settings:
         form: as it was read.
         before: whether a missing key means what it meant before it existed, as in a file of answers.
     """
-    return noun_from(Settings, form, before=before)
+    with inside("calls"):
+        calls = Calls(**{place: _calls_from(place, texts) for place, texts in form.calls.model_dump().items()})
+    frame = form.robroot
+    return noun_from(
+        Settings,
+        form,
+        before=before,
+        robroot=frame
+        if frame is None or isinstance(frame, str)
+        else (*_floats(m(frame.xyz_mm)), *_floats(rad(frame.rpy_deg))),
+        external_axes=tuple(ExternalAxis(axis.name, axis.at) for axis in form.external_axes),
+        calls=calls,
+        header=tuple(form.header),
+    )
+
+
+def _calls_from(place: str, texts: list[str]) -> tuple[Call, ...]:
+    with inside(place):
+        return tuple(Call.parse(text) for text in texts)
+
+
+def _floats(values: Array) -> tuple[float, ...]:
+    return tuple(float(value) for value in values)
 
 
 def settings_data(settings: Settings) -> dict[str, Any]:
     """The settings as a file of answers holds them."""
-    return data_of(settings)
+    frame, calls = settings.robroot, settings.calls
+    return data_of(settings) | {
+        "robroot": {"xyz_mm": plain(mm(np.array(frame[:3]))), "rpy_deg": plain(deg(np.array(frame[3:])))}
+        if isinstance(frame, tuple)
+        else frame,
+        "external_axes": [{"name": axis.name, "at": plain(axis.at)} for axis in settings.external_axes],
+        "calls": {each.name: [str(call) for call in getattr(calls, each.name)] for each in fields(calls)},
+        "header": list(settings.header),
+    }
 
 
 def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_part: Array) -> Hole:

@@ -21,6 +21,7 @@ from pydantic import (
 
 from zerorev.files.kuka_frames import KEYS, in_own_keys
 from zerorev.files.stated_forms import Form, Many, Words, keys_of, kind
+from zerorev.model.controller import CALL, HEADER_LINE
 from zerorev.model.settings import Settings
 from zerorev.visible import one_line
 
@@ -84,6 +85,7 @@ StandoffsMm = Annotated[list[Length], Field(min_length=3, max_length=MOST_BREAKP
 SpinsDeg = Annotated[list[Angle], Field(min_length=3, max_length=MOST_BREAKPOINTS, fail_fast=True)]
 SixSigns = Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)]
 Branch = Annotated[int, Field(ge=0, le=7)]
+CallTexts = Annotated[list[Name], Field(max_length=20)]
 Inertia = Annotated[list[Annotated[float, Field(ge=-1e9, le=1e9)]], Field(min_length=6, max_length=6)]
 INERTIA = "six numbers [kg m^2]: xx, xy, xz, yy, yz, zz about the centre of mass"
 
@@ -251,9 +253,49 @@ class ToolFile(GivenToolForm):
 # --- job --------------------------------------------------------------------------------------------------------------
 
 
+class ExternalAxisForm(Form):
+    """An axis besides the robot's six."""
+
+    name: Literal["E1", "E2", "E3", "E4", "E5", "E6"] = Field(description="E1 to E6")
+    at: Length = Field(description="a number [mm or deg]: where it stands, as the controller shows it")
+
+
+class CallsForm(Form):
+    """Programs of the controller that are called where the robot stands still."""
+
+    before_job: CallTexts = Field(default=[], description=f"a list of calls before the first move; each {CALL}")
+    before_hole: CallTexts = Field(
+        default=[], description=f"a list of calls at the first point of each hole; each {CALL}"
+    )
+    after_hole: CallTexts = Field(
+        default=[], description=f"a list of calls at the last point of each hole; each {CALL}"
+    )
+    after_job: CallTexts = Field(default=[], description=f"a list of calls after the last move; each {CALL}")
+
+
 @keys_of(Settings)
 class SettingsForm(Form):
     """How to plan and how to run the motion."""
+
+    robroot: (
+        Annotated[Annotated[Name, Tag("<text>")] | Annotated[GivenFrameForm, Tag("<mapping>")], Discriminator(kind)]
+        | None
+    ) = Field(
+        default=None,
+        description="text: the variable that says where the robot's own base stands in the controller's world, "
+        "e.g. $ROBROOT; or a mapping of xyz_mm and rpy_deg, or of KUKA's x, y, z, a, b, c: that frame; or null: one",
+    )
+    external_axes: Annotated[list[ExternalAxisForm], Field(max_length=6)] = Field(
+        default=[],
+        description="a list of name and at: where axes besides the robot's six stand, e.g. {name: E1, at: 1500}",
+    )
+    calls: CallsForm = Field(
+        default=CallsForm(),
+        description="a mapping of before_job, before_hole, after_hole and after_job to lists of calls",
+    )
+    header: Annotated[list[Name], Field(max_length=20)] = Field(
+        default=[], description=f"a list of lines that go before the program; each {HEADER_LINE}"
+    )
 
 
 class HoleForm(Form):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from zerorev.errors import InputError
+from zerorev.model.controller import Calls, ExternalAxis, check_controller
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
@@ -20,12 +21,22 @@ Legs = Literal["straight", "free"]
 GOOD = "What counts as a good motion"
 RUN = "How it is run"
 SEQUENCE = "How the holes follow each other"
+PROGRAM = "How the program fits the controller"
+NO_CALLS = Calls()
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How to plan and how to run the motion; SI and radians here, millimetres and degrees in files."""
+    """How to plan and how to run the motion; SI and radians here, millimetres and degrees in files.
+
+    Attributes:
+        robroot: where the robot's own base stands in the controller's world: the name of a variable that says so, or
+            x, y, z [m], roll, pitch, yaw [rad]; None: they are the same.
+        external_axes: where axes besides the robot's six stand.
+        calls: programs of the controller that are called where the robot stands still.
+        header: lines that begin with &, which a controller keeps before the program.
+    """
 
     min_rate: Annotated[
         float,
@@ -267,10 +278,38 @@ class Settings:
             label="boxes of a proof",
         ),
     ] = 100_000
+    tool_number: Annotated[
+        int | None,
+        Whole(
+            "number of the tool on the controller",
+            none="the program sets none",
+            least=1,
+            to=16,
+            note="`$ACT_TOOL`, and `$LOAD` by the mass of the tool, or of that number where that is not known",
+            group=PROGRAM,
+            label="tool number",
+        ),
+    ] = None
+    base_number: Annotated[
+        int | None,
+        Whole(
+            "number of the base on the controller",
+            none="the program sets none",
+            least=1,
+            to=32,
+            note="`$ACT_BASE`",
+            label="base number",
+        ),
+    ] = None
+    robroot: str | tuple[float, ...] | None = None
+    external_axes: tuple[ExternalAxis, ...] = ()
+    calls: Calls = NO_CALLS
+    header: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check ranges."""
         check(self)
+        check_controller(self.robroot, self.external_axes, self.header)
         self._check_weights()
 
     def _check_weights(self) -> None:

@@ -10,7 +10,7 @@ other number must be equal.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from zerorev.errors import InputError, NotExportableError
 from zerorev.model.plan import Plan
@@ -58,13 +58,24 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
         exported = build_program(plan, skip_failed=True)
     except NotExportableError as refusal:  # a move between two holes
         return Expected(plan, dialect, {None: "; ".join(refusal.reasons)}, moving)
-    program = _read_again(exported, dialect)
+    program = _with_end(plan, _read_again(exported, dialect))
     holes = {hole.id: written for hole, written in zip(exported.holes, program.holes, strict=True)}
     return Expected(plan, dialect, refused, moving, program, holes)
 
 
 def _read_again(program: Program, dialect: Dialect) -> WrittenProgram:
     return dialect.read(dialect.write(program, dialect.program_name(program.name), (), "as read back"))
+
+
+def _with_end(plan: Plan, program: WrittenProgram) -> WrittenProgram:
+    """The program with what is called after the job in its `tail`: a reader cannot know it from the last hole's."""
+    last = program.holes[-1]
+    count = len(plan.settings.calls.after_job) + 1
+    calls = last.statements[-count:]
+    if count == 1 or program.tail or calls[0].line <= last.moves[-1].line:
+        return program
+    last = replace(last, statements=last.statements[:-count])
+    return replace(program, holes=(*program.holes[:-1], last), tail=calls)
 
 
 @dataclass(frozen=True)
@@ -89,6 +100,7 @@ class Expected:
 
     def beside(self, program: WrittenProgram, file_name: str = "") -> tuple[Drilled, ...]:
         """What a program has for each hole of the plan, as `as_exported`."""
+        program = _with_end(self.plan, program)
         drilled = dict(
             zip(self.moving, _paired(program, [self.holes.get(own) for own in self.moving], self.dialect), strict=True)
         )
@@ -113,7 +125,8 @@ class Expected:
         """The program of some of the holes, on which its head and the ways between them depend; None of no holes."""
         if len(kept) in (0, len(self.holes)):
             return self.program if kept else None
-        return _read_again(build_program(self.plan, skip_failed=True, only=kept), self.dialect)
+        program = build_program(self.plan, skip_failed=True, only=kept)
+        return _with_end(self.plan, _read_again(program, self.dialect))
 
     def _around(
         self,

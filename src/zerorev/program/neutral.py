@@ -15,6 +15,7 @@ import numpy as np
 
 from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array, transform
+from zerorev.model.dynamics import Load
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, named_holes
@@ -121,6 +122,7 @@ class Program:
         holes: as they are drilled.
         end: joints through which moves of all axes lead away from the last hole [rad], shape (n, 6).
         findings: what was shortened or left out on the way here.
+        load: what hangs on the flange; None: not known.
         listed: how many holes the plan has.
         plan_file: name of the file that the plan is in; empty: of none.
     """
@@ -137,6 +139,7 @@ class Program:
     holes: tuple[HoleProgram, ...]
     end: Array
     findings: tuple[Finding, ...] = ()
+    load: Load | None = None
     listed: int = 0
     plan_file: str = ""
 
@@ -192,6 +195,7 @@ def build_program(
         holes=tuple(holes),
         end=end,
         findings=tuple(findings),
+        load=plan.tool.load,
         listed=len(plan.holes),
         plan_file=plan_file,
     )

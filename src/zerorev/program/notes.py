@@ -8,9 +8,10 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding, FindingKind, Level
+from zerorev.model.job import Settings
 from zerorev.program.neutral import HoleProgram, LinearMove, Program
 
-__all__ = ["CornerDepth", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
+__all__ = ["CornerDepth", "calls", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
 
 NOTICEABLE = 1e-6  # [m] a depth below this is not worth a word
 SPINDLE_SHARE = 0.01  # a change of the spindle's speed beyond this share is a warning
@@ -60,7 +61,14 @@ def turn_speed(hole: HoleProgram) -> float:
 
 def notes(program: Program) -> tuple[Finding, ...]:
     """Findings that need no more than the program; what holds for every hole alike is said once."""
-    return (*program.findings, *_blend(program), *_clearance(program), *_spindle(program), *_unchecked(program))
+    return (
+        *program.findings,
+        *_blend(program),
+        *_clearance(program),
+        *_spindle(program),
+        *calls(program.settings),
+        *_unchecked(program),
+    )
 
 
 def _said_once(program: Program, level: Level, kind: FindingKind, messages: list[str]) -> tuple[Finding, ...]:
@@ -142,6 +150,14 @@ def _spindle(program: Program) -> tuple[Finding, ...]:
         f"in the {move.leg} of hole {hole_id}"
     )
     return (Finding("warning" if share > SPINDLE_SHARE else "info", "spindle_speed", message),)
+
+
+def calls(settings: Settings) -> tuple[Finding, ...]:
+    """Which programs of the controller are called where: nobody here knows what they do."""
+    return tuple(
+        Finding("info", "calls", f"calls {', '.join(map(str, called))} {place}: what that does is not examined")
+        for place, called in settings.calls.places()
+    )
 
 
 def _unchecked(program: Program) -> tuple[Finding, ...]:

@@ -60,7 +60,7 @@ def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: Wr
     """
     body = skeleton(plan.robot.arm, np.deg2rad(_floats(written.axes_deg))[None])
     begin = transform(body.R_base_flange[:, :, 0], body.flange[:, 0]) @ _frame(program.tool_mm_deg)
-    T_base_part = _frame(program.base_mm_deg)
+    T_base_part = np.linalg.inv(_world(plan)) @ _frame(program.base_mm_deg)
     poses = np.stack([begin, *(T_base_part @ _frame(move.point_mm_deg) for move in written.moves)])
     hole = hole_plan.hole
     standoff = (hole.target - poses[:, :3, 3]) @ hole.direction
@@ -77,7 +77,7 @@ def frames_as_planned(plan: Plan, program: WrittenProgram) -> Iterator[str]:
     """$TOOL and $BASE must be the plan's."""
     for name, planned, printed in (
         ("$TOOL", plan.tool.T_flange_tcp @ AS_WRITTEN, program.tool_mm_deg),
-        ("$BASE", plan.T_base_part, program.base_mm_deg),
+        ("$BASE", _world(plan) @ plan.T_base_part, program.base_mm_deg),
     ):
         off, turned = _apart(planned[None], _frame(printed)[None])
         if off[0] > LENGTH or turned[0] > FRAME_ANGLE:
@@ -143,6 +143,14 @@ def moves_as_planned(
         feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
         if abs(float(move.feed_m_s) - feed) > FEED:
             yield f"line {move.line} has a feed of {float(move.feed_m_s) * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+
+
+def _world(plan: Plan) -> Array:
+    """The robot's base in the frame from which $BASE counts, shape (4, 4), translation [m]."""
+    if not isinstance(plan.settings.robroot, tuple):
+        return np.eye(4)
+    x, y, z, roll, pitch, yaw = plan.settings.robroot
+    return transform(rotation_rpy(roll, pitch, yaw), np.array([x, y, z]))
 
 
 def _poses(hole_plan: HolePlan, standoff: Array, psi: Array) -> Array:

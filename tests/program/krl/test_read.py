@@ -212,7 +212,6 @@ LIN = "LIN {X 500.0000,Y 300.0000,Z 800.0000,A 0.0000,B 0.0000,C 5.9388}"
         ("BAS (#VEL_PTP,20 )\n", "", r"a move before BAS \(#VEL_PTP\) is set"),
         ("BAS (#VEL_PTP,20 )", "BAS (#VEL_PTP,0 )", "a number above 0"),
         ("BAS (#INITMOV,0 )\nBAS (#VEL_PTP,20 )", "BAS (#VEL_PTP,20 )\nBAS (#INITMOV,0 )", "INITMOV would undo"),
-        ("&ACCESS", "&ACCES", "'&ACCES' in"),
         ("&ACCESS", " &ACCESS", "'&ACCESS' in"),
         ("EXT BAS", "&REL 2\nEXT BAS", "'&REL' in"),
         ("DEF test ( )", "DEF test ( ) LIN", r"accepted: DEF name \( \)"),

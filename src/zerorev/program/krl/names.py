@@ -13,7 +13,7 @@ import re
 
 from zerorev.program.krl.text import clean, in_ascii
 
-__all__ = ["LONGEST_ID", "RESERVED", "digest", "identifier", "label", "part_name"]
+__all__ = ["KEPT", "LONGEST_ID", "RESERVED", "digest", "identifier", "label", "part_name"]
 
 LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
 LONGEST_ID = 60  # characters of a hole's id in a comment
@@ -48,9 +48,12 @@ _WINDOWS = "AUX CLOCK$ CON CONIN$ CONOUT$ NUL PRN " + " ".join(
     f"{port}{n}" for port in ("COM", "LPT") for n in range(10)
 )
 
-RESERVED = frozenset(" ".join((_LANGUAGE, _BUILT_IN, _DELIVERED, _WINDOWS)).split())
-"""Words of the language, functions that are built in, modules and data that a controller has, Windows' devices: a
-program so called would not load, or would take the place of what is called so."""
+KEPT = frozenset(f"{_LANGUAGE} {_BUILT_IN}".split())
+"""Words of the language and functions that are built in: what no call may be called."""
+
+RESERVED = KEPT | frozenset(f"{_DELIVERED} {_WINDOWS}".split())
+"""The same, modules and data that a controller has, and Windows' devices: a program so called would not load, or would
+take the place of what is called so."""
 
 _NAME = re.compile(rf"[A-Za-z][A-Za-z0-9_]{{0,{LONGEST_NAME - 1}}}")
 

@@ -15,6 +15,7 @@ from typing import NoReturn
 
 from zerorev.errors import InputError
 from zerorev.model.written import Six, Statement, Word, WrittenHole, WrittenMove, WrittenProgram
+from zerorev.program.krl.names import KEPT
 from zerorev.program.krl.source import shape, statements, words
 
 __all__ = ["read_krl"]
@@ -70,10 +71,12 @@ class _Reading:
             self.refuse("a second program" if self.name else f"'{statement.source}' before DEF")
         if not self.name:
             self.begin(statement)
-        elif (form := FORMS.get(shape(statement.words))) is None:
-            self.refuse_form(statement)
-        else:
+        elif (form := FORMS.get(_any_variable(shape(statement.words)))) is not None:
             form(self, _name(statement.words), tuple(word for word in statement.words if isinstance(word, Decimal)))
+        elif is_call(statement.words):
+            self.stand_still(f"{statement.source} is called")
+        else:
+            self.refuse_form(statement)
         if not self.ended:
             (self.head if self.hole is None else self.hole.statements).append(statement)
 
@@ -94,21 +97,37 @@ class _Reading:
             self.refuse(f"{name} is set a second time, or within a hole")
         self.set(name, numbers)
 
+    def choose(self, name: str, numbers: tuple[Decimal, ...]) -> None:
+        """What a job may have set, once, before the first move."""
+        self.prepare(name, numbers)
+
+    def rest(self, _: str, numbers: tuple[Decimal, ...]) -> None:
+        if numbers[0] != 0:
+            self.refuse(f"'WAIT SEC {numbers[0]}' is not a statement that zerorev writes", accepted="WAIT SEC 0.0")
+        self.stand_still("WAIT SEC")
+
+    def stand_still(self, what: str) -> None:
+        """Refuse what would make a blend a stop, or what would run ahead of the moves."""
+        if "BAS (#INITMOV)" not in self.settings:
+            self.refuse(f"{what} before INITMOV")
+        if self.hole is not None and self.hole.moves and self.hole.moves[-1].blend_mm:
+            self.refuse(f"{what} between blended moves")
+
     def set(self, name: str, numbers: tuple[Decimal, ...]) -> None:
         if len(numbers) == 1 and not numbers[0] > 0:
             self.refuse(f"{name} is set to {numbers[0]}", accepted="a number above 0")
         self.settings[name] = numbers
 
     def go(self, _: str, numbers: tuple[Decimal, ...]) -> None:
+        """A move of all axes: to a point on the way, if another follows before the first straight move."""
         if missing := [name for name in NEEDED if name not in self.settings]:
             self.refuse(f"a move before {', '.join(missing)} is set")
-        """A move of all axes: to a point on the way, if another follows before the first straight move."""
         before: tuple[Statement, ...] = ()
         if self.hole is not None and not self.hole.moves:
             before = (*self.hole.way, *self.hole.statements)
         else:
             self.close()
-        self.hole = _Hole(self.line, _six(numbers), before)
+        self.hole = _Hole(self.line, _six(numbers[:6]), before)
 
     def go_straight(self, _: str, numbers: tuple[Decimal, ...]) -> None:
         self.move(numbers, blended=False)
@@ -149,7 +168,7 @@ class _Reading:
         return WrittenProgram(self.name, tool, base, tuple(self.holes), tuple(self.head), self.tail)
 
     def refuse_form(self, statement: Statement) -> NoReturn:
-        alike = [form for form in SOURCES if words(form, self.refuse)[0] == statement.words[0]]
+        alike = [form for form in SOURCES if words(form, self.refuse)[0] == statement.words[0] and "E6AXIS" not in form]
         accepted = " or ".join(alike) + ", a number for each 0" * any("0" in form for form in alike)
         what = f"'{statement.source[:80]}' is not a statement that zerorev writes"
         self.refuse(what, accepted=accepted or "a program as zerorev exports it")
@@ -160,6 +179,26 @@ class _Reading:
     def refuse_at(self, line: int, what: str) -> NoReturn:
         self.line = line
         self.refuse(what)
+
+
+def is_call(words: tuple[Word, ...]) -> bool:
+    """Whether a statement calls a program that is not a word of KRL, with nothing but literals."""
+    name, *rest = words
+    if not isinstance(name, str) or not NAME.fullmatch(name) or name in KEPT or rest[:1] != ["("] or rest[-1:] != [")"]:
+        return False
+    arguments, commas = rest[1:-1:2], rest[2:-1:2]
+    literal = all(
+        isinstance(each, Decimal) or each in ("TRUE", "FALSE") or (len(each) > 1 and each[0] in '#"')
+        for each in arguments
+    )
+    return literal and all(comma == "," for comma in commas) and len(arguments) in (0, len(commas) + 1)
+
+
+def _any_variable(words: tuple[str, ...]) -> tuple[str, ...]:
+    """$BASE counts from what any variable holds."""
+    if words[:2] == ("$BASE", "=") and words[3:4] == (":",) and len(words[2]) > 1:
+        return (*words[:2], "$ROBROOT", *words[3:])
+    return words
 
 
 def _name(words: tuple[Word, ...]) -> str:
@@ -178,6 +217,7 @@ def _six(numbers: tuple[Decimal, ...]) -> Six:
 
 
 POINT, AXES = "X 0,Y 0,Z 0,A 0,B 0,C 0", "A1 0,A2 0,A3 0,A4 0,A5 0,A6 0"
+OUTER = [",".join(f"E{number} 0" for number in range(1, 7) if chosen >> (number - 1) & 1) for chosen in range(1, 2**6)]
 SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
     "EXT BAS (BAS_COMMAND :IN,REAL :IN )": _Reading.prepare,
     "BAS (#INITMOV,0 )": _Reading.reset,
@@ -185,6 +225,11 @@ SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
     "BAS (#ACC_PTP,0 )": _Reading.prepare,
     f"$TOOL={{FRAME: {POINT}}}": _Reading.prepare,
     f"$BASE={{FRAME: {POINT}}}": _Reading.prepare,
+    f"$BASE=$ROBROOT:{{FRAME: {POINT}}}": _Reading.prepare,
+    "$ACT_TOOL=0": _Reading.choose,
+    **{f"$LOAD=LOAD_DATA[{number}]": _Reading.choose for number in range(1, 17)},
+    f"$LOAD={{LOAD: M 0,CM {{{POINT}}},J {{X 0,Y 0,Z 0}}}}": _Reading.choose,
+    "$ACT_BASE=0": _Reading.choose,
     # on these two the straight move of the certificate rests
     "$IPO_MODE=#BASE": _Reading.prepare,
     "$ORI_TYPE=#VAR": _Reading.prepare,
@@ -192,6 +237,8 @@ SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
     "$VEL.ORI1=0": _Reading.prepare,
     "$VEL.ORI2=0": _Reading.prepare,
     f"PTP {{AXIS: {AXES}}}": _Reading.go,
+    **{f"PTP {{E6AXIS: {AXES},{outer}}}": _Reading.go for outer in OUTER},
+    "WAIT SEC 0": _Reading.rest,
     "$VEL.CP=0": _Reading.set,
     "$APO.CDIS=0": _Reading.set,
     f"LIN {{{POINT}}}": _Reading.go_straight,
@@ -202,7 +249,9 @@ SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
 
 FORMS = {shape(words(source, _Reading("").refuse)): act for source, act in SOURCES.items()}
 NEEDED = tuple(
-    _name(words(source, _Reading("").refuse))
-    for source, act in SOURCES.items()
-    if act in (_Reading.reset, _Reading.prepare)
+    dict.fromkeys(
+        _name(words(source, _Reading("").refuse))
+        for source, act in SOURCES.items()
+        if act in (_Reading.reset, _Reading.prepare)
+    )
 )

@@ -24,17 +24,17 @@ LONGEST_STATEMENT = 255  # characters: twice what `export` writes
 
 _ODD = re.compile(r"[^\t -~]")
 _ANGLES = ("A", "B", "C")
-_HEADER = re.compile(r"&[ \t]*(?:ACCESS|REL|COMMENT|PARAM|USER)\b", re.IGNORECASE)
 _SIGNS = "{}(),:="
-_WORD = re.compile(rf"[{_SIGNS}]|[^ \t{_SIGNS}]+")
+_WORD = re.compile(rf'"[^"]*"|[{_SIGNS}]|[^ \t"{_SIGNS}]+|"')
+_TEXT = re.compile(r'"[^"]*"')
 _NUMBER = re.compile(r"-?[0-9]{1,9}(?:\.[0-9]{1,12})?")
-_NAME = re.compile(r"[$#]?[A-Z_][A-Z0-9_]*(?:\.[A-Z0-9_]+)*", re.IGNORECASE)
+_NAME = re.compile(r"[$#]?[A-Z_][A-Z0-9_]*(?:\.[A-Z0-9_]+)*|LOAD_DATA\[[0-9]{1,2}\]", re.IGNORECASE)
 
 
 def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
     """The statements of a source text, in order: without comments, white space, and the header before `DEF`.
 
-    The header is what a controller keeps of its own about a file: `&ACCESS`, `&REL`, `&PARAM`, `&COMMENT`, `&USER`.
+    The header is what a controller keeps of its own about a file, in lines that begin with `&`.
 
     Args:
         text: of the file.
@@ -44,18 +44,18 @@ def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
     for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), start=1):
         if odd := _ODD.search(line):
             refuse(number, _named(odd[0]))
-        if not begun and _HEADER.match(line):
+        if not begun and line.startswith("&"):
             continue
         printed = line.partition(";")[0].rstrip()
         if len(printed) > LONGEST_STATEMENT:
             refuse(number, f"a statement of {len(printed)} characters: a controller may not read all of it")
         if source := " ".join(printed.split()):
             begun = True
-            yield Statement(words(source, partial(refuse, number)), number, source)
+            yield Statement(words(printed, partial(refuse, number)), number, source)
 
 
 def words(source: str, refuse: Callable[[str], NoReturn]) -> tuple[Word, ...]:
-    """The words of a statement: signs, names in capitals (KRL does not tell case), and numbers.
+    """The words of a statement: signs, names in capitals (KRL does not tell case), numbers, and texts in their quotes.
 
     Args:
         source: one statement, without a comment.
@@ -65,6 +65,8 @@ def words(source: str, refuse: Callable[[str], NoReturn]) -> tuple[Word, ...]:
     for word in _WORD.findall(source):
         if _NUMBER.fullmatch(word):
             found.append(Decimal(word))
+        elif _TEXT.fullmatch(word):
+            found.append(word)
         elif word in _SIGNS or _NAME.fullmatch(word):
             found.append(word.upper())
         else:

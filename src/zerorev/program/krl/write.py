@@ -15,6 +15,8 @@ import numpy as np
 from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
+from zerorev.model.job import Settings
+from zerorev.program.krl.controller import axis_target, called, frames_and_load, header, not_set, refuse_calls
 from zerorev.program.krl.names import LONGEST_ID, identifier, label
 from zerorev.program.krl.text import (
     aggregate,
@@ -22,7 +24,6 @@ from zerorev.program.krl.text import (
     comment,
     degrees,
     fixed,
-    frame_angles,
     settled,
     turn_about_x,
 )
@@ -35,15 +36,13 @@ __all__ = ["to_krl"]
 PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves are not checked for collisions
 LEAST_TURN_SPEED = 200.0  # [deg/s]
 TURN_SPEED_RESERVE = 1.2
-FRAME_ANGLE_DECIMALS, AXIS_DECIMALS, SPEED_DECIMALS = 6, 5, 6
+SPEED_DECIMALS = 6
 RULE = "; " + "-" * 98
 
 SAFETY = (
     "Run the program in T1 first, the spindle off and no part in place.",
     "PTP moves are checked against the surface of the part alone, and the first one not at all: not for fixtures, "
     "the cell or the arm's own links.",
-    "Spindle, coolant and payload ($LOAD) are not set here. The spindle must run before the drill enters.",
-    "$BASE is given from the robot's own base: it holds as written where $ROBROOT equals $WORLD.",
     "$TOOL, $BASE and the speeds are set at the top: after a reset do not start from a line further down.",
     "After a stop in a hole pull the drill out along the drill axis (tool X) before a new start: a PTP comes first.",
 )
@@ -73,20 +72,22 @@ def to_krl(
         NotExportableError: the robot is not a KUKA.
     """
     refuse_other_makers(program.manufacturer, program.robot)
+    refuse_calls(program, [name or program.name])
+    calls = program.settings.calls
     lines = [
-        "&ACCESS RVP",
-        "&REL 1",
-        "&COMMENT drilling without joint reversals",
+        *header(program.settings.header),
         f"DEF {identifier(name or program.name)} ( )",
         *_head(program, notes(program) if findings is None else findings, version or installed_version("zerorev")),
         "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
         *_settings(program),
+        *called(calls.before_job),
     ]
     for hole in program.holes:
-        lines += _hole(hole, f"Hole {hole.number} of {program.listed}")
+        lines += _hole(hole, f"Hole {hole.number} of {program.listed}", program.settings)
     if len(program.end):
-        lines += [";FOLD Away from the last hole", *(_ptp(joints) for joints in program.end), ";ENDFOLD"]
-    return "\n".join([*lines, "END", ""])
+        away = [_ptp(joints, program.settings) for joints in program.end]
+        lines += [";FOLD Away from the last hole", *away, ";ENDFOLD"]
+    return "\n".join([*lines, *called(calls.after_job), "END", ""])
 
 
 def refuse_other_makers(manufacturer: str, robot: str) -> None:
@@ -125,7 +126,7 @@ def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list
         at = f"hole {label(finding.hole)}: " if finding.hole is not None else ""
         lines += comment(at + _with_labels(finding.message, ids), first=f"{finding.level}: ".ljust(10))
     lines.append(";")
-    for text in (*SAFETY, *FRAMES):
+    for text in (*SAFETY[:2], *not_set(settings), *SAFETY[2:], *FRAMES):
         lines += comment(text, first="- ")
     return [*lines, RULE]
 
@@ -153,8 +154,7 @@ def _settings(program: Program) -> list[str]:
         "BAS (#INITMOV,0 )",
         f"BAS (#VEL_PTP,{PTP_SPEED} )",
         f"BAS (#ACC_PTP,{PTP_ACCELERATION} )",
-        f"$TOOL={_frame(program.T_flange_tool)}",
-        f"$BASE={_frame(program.T_base_part)}",
+        *frames_and_load(program),
         "$IPO_MODE=#BASE",
         "$ORI_TYPE=#VAR",
         "$ADVANCE=3",
@@ -164,7 +164,7 @@ def _settings(program: Program) -> list[str]:
     ]
 
 
-def _hole(hole: HoleProgram, title: str) -> list[str]:
+def _hole(hole: HoleProgram, title: str, settings: Settings) -> list[str]:
     """PTP moves by axis values, then absolute linear moves.
 
     Never LIN_REL: selected again after a stop within the stroke it runs its whole stroke again from there, into the
@@ -172,7 +172,8 @@ def _hole(hole: HoleProgram, title: str) -> list[str]:
     assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
     """
     lines = [f";FOLD {title}: {label(hole.id)}", *_about(hole)]
-    lines += [_ptp(joints) for joints in (*hole.way, hole.start.joints)]
+    lines += [_ptp(joints, settings) for joints in (*hole.way, hole.start.joints)]
+    lines += called(settings.calls.before_hole)
     A, B = axis_angles(hole.axis)
     feed, radius = None, ""
     for move in hole.moves:
@@ -183,7 +184,7 @@ def _hole(hole: HoleProgram, title: str) -> list[str]:
             radius = printed
             lines.append(f"$APO.CDIS={radius}")
         lines.append(_lin(move, A, B))
-    return [*lines, f";ENDFOLD ({title})"]
+    return [*lines, *called(settings.calls.after_hole), f";ENDFOLD ({title})"]
 
 
 def _about(hole: HoleProgram) -> list[str]:
@@ -199,10 +200,8 @@ def _about(hole: HoleProgram) -> list[str]:
     ]
 
 
-def _ptp(joints: Array) -> str:
-    # axis values carry the turns of A4 and A6, which a pose with S and T would leave to the controller
-    values = [fixed(angle, AXIS_DECIMALS) for angle in np.rad2deg(joints)]
-    return f"PTP {aggregate('AXIS', 'A1 A2 A3 A4 A5 A6', values)}"
+def _ptp(joints: Array, settings: Settings) -> str:
+    return f"PTP {axis_target(joints, settings)}"
 
 
 def _lin(move: LinearMove, A: float, B: float) -> str:
@@ -210,8 +209,3 @@ def _lin(move: LinearMove, A: float, B: float) -> str:
     angles = [degrees(angle) for angle in (A, B, turn_about_x(T[:3, :3], A, B))]
     target = aggregate("", "X Y Z A B C", [*(fixed(x * 1e3) for x in T[:3, 3]), *angles])
     return f"LIN {target}{' C_DIS' if move.blend > 0 else ''} ; {move.comment}"
-
-
-def _frame(T: Array) -> str:
-    angles = [degrees(angle, FRAME_ANGLE_DECIMALS) for angle in frame_angles(T[:3, :3])]
-    return aggregate("FRAME", "X Y Z A B C", [*(fixed(x * 1e3) for x in T[:3, 3]), *angles])

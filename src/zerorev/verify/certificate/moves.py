@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 
+import numpy as np
 from flint import arb
 
 from zerorev.model.hole import Hole
@@ -22,8 +23,17 @@ from zerorev.verify.certificate.vector import Axes, Vector, axis_angle, combined
 
 __all__ = ["written_motion"]
 
+Turn = tuple[arb, arb]
 
-def written_motion(arm: ArmGeometry, program: WrittenProgram, written: WrittenHole, hole: Hole, at: Places) -> Motion:
+
+def written_motion(
+    arm: ArmGeometry,
+    program: WrittenProgram,
+    written: WrittenHole,
+    hole: Hole,
+    at: Places,
+    robroot: tuple[float, ...] | None = None,
+) -> Motion:
     """The motion of one hole of a program.
 
     Args:
@@ -32,9 +42,11 @@ def written_motion(arm: ArmGeometry, program: WrittenProgram, written: WrittenHo
         written: the moves.
         hole: as planned; only to tell stand-offs in messages.
         at: where its points lie.
+        robroot: x, y, z [m], roll, pitch, yaw [rad] of the robot's base in the frame from which the part frame of the
+            program counts; None: they are the same.
     """
     tip_in_flange, tool = _frame(program.tool_mm_deg)
-    part, base = _frame(program.base_mm_deg)
+    part, base = _seen_from(robroot, *_frame(program.base_mm_deg))
     in_tool = tuple((tool[0][k], tool[1][k], tool[2][k]) for k in range(3))  # axes of the flange
     wrist_in_flange = combined((tip_in_flange, arb(-1)), ((arb(0), arb(0), arb(-arm.c4)), arb(1)))
 
@@ -72,6 +84,20 @@ def written_motion(arm: ArmGeometry, program: WrittenProgram, written: WrittenHo
     return motion_of(segments, at.lead, at.corner, at.first, at.last)
 
 
+def _seen_from(robroot: tuple[float, ...] | None, origin: Vector, axes: Axes) -> tuple[Vector, Axes]:
+    """A frame as it is seen from the robot's base."""
+    if robroot is None:
+        return origin, axes
+    place = vector(np.array(robroot[:3]))
+    root = _axes(*(arb(angle).sin_cos() for angle in robroot[:2:-1]))
+
+    def seen(direction: Vector) -> Vector:
+        return dot(root[0], direction), dot(root[1], direction), dot(root[2], direction)
+
+    x, y, z = (seen(axis) for axis in axes)
+    return seen(combined((origin, arb(1)), (place, arb(-1)))), (x, y, z)
+
+
 def _metre(length_mm: Decimal) -> arb:
     return arb(str(length_mm)) / 1000
 
@@ -83,8 +109,13 @@ def _rad(angle_deg: Decimal) -> arb:
 def _frame(values_mm_deg: Six) -> tuple[Vector, Axes]:
     """Origin [m] and axes of a frame: R = Rz(A) Ry(B) Rx(C)."""
     x, y, z = (_metre(length) for length in values_mm_deg[:3])
-    (sa, ca), (sb, cb), (sc, cc) = (_rad(angle).sin_cos() for angle in values_mm_deg[3:])
-    return (x, y, z), (
+    return (x, y, z), _axes(*(_rad(angle).sin_cos() for angle in values_mm_deg[3:]))
+
+
+def _axes(about_z: Turn, about_y: Turn, about_x: Turn) -> Axes:
+    """Of R = Rz Ry Rx, each turn by its sine and cosine."""
+    (sa, ca), (sb, cb), (sc, cc) = about_z, about_y, about_x
+    return (
         (ca * cb, sa * cb, -sb),
         (ca * sb * sc - sa * cc, sa * sb * sc + ca * cc, cb * sc),
         (ca * sb * cc + sa * sc, sa * sb * cc - ca * sc, cb * cc),

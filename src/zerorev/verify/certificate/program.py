@@ -83,5 +83,8 @@ def certify_program_hole(
 
     first = np.deg2rad([[float(angle) for angle in written.axes_deg]])
     with ball_arithmetic():
-        path = written_motion(plan.robot.arm, program, written, hole_plan.hole, at)
+        root = plan.settings.robroot
+        path = written_motion(
+            plan.robot.arm, program, written, hole_plan.hole, at, root if isinstance(root, tuple) else None
+        )
         return prove(plan.robot, path, first, claimed_reversals(score), on_other_turns)
