@@ -21,7 +21,7 @@ FOR_USERS = {
     "maps": "`map`, `map show`, `map compare`, `parameter-map`; pages with a slice to move (`--page`, with `figures`)",
     "cluster": "`--scheduler`: work on several machines; includes `maps`",
     "view": "the app (`view`) and `replay`; includes `certify`, `figures` and `maps`",
-    "compare": "the methods of pymoo and cma in `compare`",
+    "methods": "the methods of pymoo and cma in `methods`",
     "report": "`reproduce`: the thesis as one page; includes `figures` and `maps`",
 }
 HEAD = """\

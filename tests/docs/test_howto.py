@@ -13,7 +13,7 @@ from oracles import shown
 
 ROOT = Path(__file__).parents[2]
 PAGES = {page.stem: page for page in (ROOT / "README.md", *sorted((ROOT / "docs/howto").glob("*.md")))}
-SLOW = {"place_a_part", "compare", "parameter_map"}
+SLOW = {"place_a_part", "methods", "parameter_map"}
 NEEDING_A_MAP = {"maps", "map_pictures"}
 WITH_OUTPUT = {"geometry", "own_robot", "own_tool", "python"}  # of pages that show what their Python prints
 FAILING = {"findings": 2}  # exit code of the one command that is shown because it fails

@@ -154,7 +154,7 @@ READERS = [
     ["depth", "{}"],
     ["rates", "{}"],
     ["offset", "{}"],
-    ["compare", "{}"],
+    ["methods", "{}"],
     ["place", "{}", "--x-mm=-1:1"],
     ["share", "job.yaml", "{}"],
     ["check", "{}"],
@@ -257,7 +257,7 @@ def test_a_cell_is_not_a_formula(tmp_path, capsys):
     names = ["=cmd|' /C calc'!A0", "+1+1", "@SUM(1)", "-x", "\u202e=1"]
     holes = [HOLE | {"id": name} for name in names]
     (tmp_path / "job.yaml").write_text(json.dumps(JOB | {"holes": holes}))
-    command = ["compare", str(tmp_path / "job.yaml"), "--methods", "exact", "--seeds", "1"]
+    command = ["methods", str(tmp_path / "job.yaml"), "--methods", "exact", "--seeds", "1"]
     assert main([*command, "-o", str(tmp_path / "c.csv")]) == cli.FINE
     rows = list(csv.DictReader((tmp_path / "c.csv").read_text(encoding="utf-8").splitlines()))
     assert [row["hole"] for row in rows] == [*(f"'{name}" for name in names[:4]), r"\u202e=1"]

@@ -180,7 +180,7 @@ class TestCommand:
         return str(path)
 
     def test_table(self, job_file, capsys):
-        arguments = ["compare", job_file, "--methods", "exact, direct", "--seeds", "2", "--budget", "400"]
+        arguments = ["methods", job_file, "--methods", "exact, direct", "--seeds", "2", "--budget", "400"]
         assert main(arguments) == common.FINE
         out = capsys.readouterr().out
         rows = [line for line in out.splitlines() if "exact" in line]
@@ -190,7 +190,7 @@ class TestCommand:
 
     def test_json_and_file_are_the_same(self, job_file, tmp_path, capsys):
         target = tmp_path / "out.json"
-        arguments = ["compare", job_file, "--methods=exact,swarm", "--seeds=2", "--budget=400", "--hole=P1", "--json"]
+        arguments = ["methods", job_file, "--methods=exact,swarm", "--seeds=2", "--budget=400", "--hole=P1", "--json"]
         assert main([*arguments, "-o", str(target)]) == common.FINE
         shown = json.loads(capsys.readouterr().out)
         assert json.loads(target.read_text()) == shown
@@ -199,7 +199,7 @@ class TestCommand:
 
     def test_csv_has_a_row_per_run(self, job_file, tmp_path, capsys):
         target = tmp_path / "out.csv"
-        arguments = ["compare", job_file, "--methods=exact,swarm", "--seeds=3", "--budget=400", "--hole=P1"]
+        arguments = ["methods", job_file, "--methods=exact,swarm", "--seeds=3", "--budget=400", "--hole=P1"]
         assert main([*arguments, "-o", str(target)]) == common.FINE
         rows = list(csv.DictReader(target.read_text().splitlines()))
         assert [row["seed"] for row in rows] == ["", "0", "1", "2"]
@@ -224,7 +224,7 @@ class TestCommand:
         ids=lambda value: " ".join(value) if isinstance(value, list) else "",
     )
     def test_bad_input_gets_one_message(self, job_file, arguments, parts, capsys):
-        assert main(["compare", job_file, *arguments]) == common.BAD_INPUT
+        assert main(["methods", job_file, *arguments]) == common.BAD_INPUT
         out, err = capsys.readouterr()
         assert out == ""
         assert err.count("error:") == 1 or "seeds" in parts
@@ -241,7 +241,7 @@ class TestCommand:
 
         monkeypatch.setattr("zerorev.thesis.compare.runs", interrupted)
         target = tmp_path / "out.json"
-        arguments = ["compare", job_file, "--methods=exact,direct,swarm", "--budget=400", "-o", str(target)]
+        arguments = ["methods", job_file, "--methods=exact,direct,swarm", "--budget=400", "-o", str(target)]
         assert main(arguments) == common.INTERRUPTED
         out, err = capsys.readouterr()
         assert "direct" in out
@@ -252,5 +252,5 @@ class TestCommand:
 
 def test_the_command_is_listed(capsys):
     assert main(["--help"]) == common.FINE
-    assert "compare" in capsys.readouterr().out
+    assert "methods" in capsys.readouterr().out
     assert cli.app is common.app

@@ -194,6 +194,6 @@ class TestRegistry:
 
     def test_a_package_that_is_missing_is_named(self, monkeypatch):
         monkeypatch.setattr(methods, "find_spec", lambda name: None)
-        with pytest.raises(InputError, match=r"cma needs cma.*pip install 'zerorev\[compare\]'"):
+        with pytest.raises(InputError, match=r"cma needs cma.*pip install 'zerorev\[methods\]'"):
             methods_named(["exact", "cma"])
         assert list(methods_named(["swarm", "direct"])) == ["swarm", "direct"]

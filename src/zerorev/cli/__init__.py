@@ -22,6 +22,7 @@ from zerorev.cli import (  # noqa: F401
     map,
     map_compare,
     map_show,
+    methods,
     offset,
     parameter_map,
     place,

@@ -1,96 +1,78 @@
-"""`zerorev compare`: search methods against each other."""
+"""`zerorev compare`: two plans, or two jobs, hole by hole."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, need
+from zerorev.cli.common import FINE, FOUND, app
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
+if TYPE_CHECKING:
+    from zerorev.model.plan import Plan
+
 __all__ = ["compare"]
 
-USUAL = "exact,swarm,differential_evolution,dual_annealing,direct"
+ACCEPTED = "a plan file (JSON) or a job file (YAML)"
 
 
 @app.command
-def compare(
-    job: Path,
-    /,
-    *,
-    methods: str = USUAL,
-    seeds: Whole = 20,
-    hole: str | None = None,
-    budget: Whole | None = None,
-    samples: Whole | None = None,
-    crowded: bool = False,
-    output: Output = None,
-    figure: Path | None = None,
-    json: bool = False,
-) -> int:
-    """Compare search methods: how often they find zero reversals, how good what they find is, and how long they take.
+def compare(first: Path, second: Path | None = None, /, *, workers: int | None = None, json: bool = False) -> int:
+    """Compare two plans hole by hole: reversals, travel, margin, deepest, lost motion, time; and say which is better.
 
-    All of them look for the least of the thesis' objective (eq. 4.7, no motion threshold), with as many evaluations
-    each; what they find is evaluated exactly. After Ctrl-C what is finished is shown.
+    A hole of the same id is the same hole. A job is planned first, and its plan not kept: to keep it, plan it with -o
+    and compare the plan file.
 
     Args:
-        job: The job file (YAML): robot, tool, holes.
-        methods: Names with commas between them: exact, swarm, swarm_trial_1 to swarm_trial_8, differential_evolution,
-            direct, dual_annealing, pymoo_pso, pymoo_ga, pymoo_de, cma; by default exact, swarm and those of SciPy.
-        seeds: How many runs of each method, with the seeds 0, 1, 2, ...; a method without chance runs once.
-        hole: The id of the only hole to compare at.
-        budget: Evaluations a run at most; by default 5,100, the thesis'.
-        samples: Steps of a motion that the objective looks at; by default 200, the thesis'.
-        crowded: The samples crowd at the ends of the legs, where reversals hide between even ones, as the thesis' are.
-        output: Where to write the answer: JSON, or a row per run where it ends in .csv.
-        figure: Picture to draw (PNG): box plots.
+        first: A plan file (JSON) or a job file (YAML).
+        second: Another, to be set beside it.
+        workers: Processes to plan a job on; by default all cores where it is large enough.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
-    from zerorev.files.output import write_bytes, write_text
+    if second is None:
+        raise InputError(
+            "one file alone", where=str(first),
+            accepted=f"zerorev compare FIRST SECOND, each {ACCEPTED}; search methods at the holes of one job are set "
+            "side by side by zerorev methods JOB.yaml",
+        )  # fmt: skip
+    plans = [_plan(path, workers) for path in (first, second)]
 
-    check_outputs((output, figure), job)
-    if figure is not None:
-        need("matplotlib", "matplotlib", "--figure", "figures")
-    if seeds < 1:
-        raise InputError(f"{seeds} seeds", where="--seeds", accepted="1 or more")
-    wanted = read_job(job)
+    from zerorev.planning.compared import compared
+    from zerorev.report.words import plan_comparison as shown
+    from zerorev.report.words.answer import Shown
 
-    from zerorev.files.text import json_text
-    from zerorev.thesis import comparison as shown
-    from zerorev.thesis.compare import comparison, runs
-
-    given = {"budget": budget, "samples": samples}
-    limits = {key: value for key, value in given.items() if value is not None}
-    names = [name.strip() for name in methods.split(",") if name.strip()]
-    asked = comparison(wanted, names, range(seeds), hole=hole, crowded=crowded, **limits)
-    found, interrupted = [], False
-    try:
-        with terminal.progress("comparing", asked.expected, each="run") as progress:
-            for run in runs(asked):
-                found.append(run)
-                if progress:
-                    progress(len(found), asked.expected)
-    except KeyboardInterrupt:
-        interrupted = True
-    answer = replace(asked, runs=tuple(found))
-    data = shown.comparison_data(answer)
+    found, names = compared(*plans), _names(first, second)
     if json:
-        terminal.print_json(data)
-    elif found:
-        terminal.out().print(shown.comparison_table(answer))
-        terminal.print_lines(shown.comparison_lines(answer))
-    if interrupted:
-        raise KeyboardInterrupt(f"interrupted after {len(found)} of {asked.expected} runs; no file was written")
-    if output is not None:
-        write_text(output, shown.comparison_csv(answer) if output.suffix.lower() == ".csv" else json_text(data))
-    if figure is not None:
-        from zerorev.report.figures.style import png
-        from zerorev.thesis.figures.comparison import comparison_boxes
+        terminal.print_json(shown.comparison_data(found, names))
+    else:
+        if found.pairs:
+            terminal.out().print(shown.comparison_table(found, names))
+        terminal.print_lines(shown.comparison_lines(found, names))
+    return FINE if all(Shown(plan, plan.holes).sound for plan in plans) else FOUND
 
-        write_bytes(figure, png(comparison_boxes(answer)))
-    for what, path in (("answer", output), ("figure", figure)):
-        if path is not None and not json:
-            terminal.say(f"{what} written to {path}")
-    return FINE
+
+def _plan(path: Path, workers: int | None) -> Plan:
+    """The plan of a file, or of the job in it."""
+    from zerorev.files.io import plan_from_text, read_job
+    from zerorev.files.other_kinds import is_plan
+    from zerorev.files.text import read_text
+
+    text = read_text(path, ACCEPTED)
+    if is_plan(text, path.name):
+        return plan_from_text(text, str(path))
+    from zerorev.planning.job import plan_job
+
+    job = read_job(path)
+    for note in job.notes:
+        terminal.note(note)
+    with terminal.progress(f"planning {path.name}", len(job.holes)) as progress:
+        return plan_job(job, progress, workers=workers)
+
+
+def _names(first: Path, second: Path) -> tuple[str, str]:
+    """What two files are called: their names without the ending, with it, or their whole paths, as they differ."""
+    for names in ((first.stem, second.stem), (first.name, second.name)):
+        if names[0] != names[1]:
+            return names
+    return str(first), str(second)

@@ -9,7 +9,7 @@ from typing import Any
 
 from zerorev.errors import InputError
 
-__all__ = ["meant_name", "refuse_another_kind", "refuse_map_folder", "refuse_robot_description"]
+__all__ = ["is_plan", "meant_name", "refuse_another_kind", "refuse_map_folder", "refuse_robot_description"]
 
 FOR = {
     "plan": ("a plan", "zerorev check, export, replay and view"),
@@ -21,6 +21,16 @@ FOR = {
     "cell": ("a cell file", "zerorev simulate --cell"),
 }
 OF_A_MAP = ("targets", "points", "directions")
+
+
+def is_plan(text: str, name: str) -> bool:
+    """Whether a text is JSON, as plans are and jobs are not.
+
+    Args:
+        text: of a file.
+        name: that it has.
+    """
+    return text.lstrip().startswith("{") and not name.lower().endswith((".yaml", ".yml"))
 
 
 def refuse_another_kind(data: Any, file: str) -> None:

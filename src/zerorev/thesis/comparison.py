@@ -1,4 +1,4 @@
-"""What the command `compare` writes and shows: plain data, a file of rows, a table, and a few lines."""
+"""What the command `methods` writes and shows: plain data, a file of rows, a table, and a few lines."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PSI = ("psi_start_deg", "psi_target_deg", "psi_end_deg")
 
 
 def comparison_data(comparison: Comparison) -> dict[str, Any]:
-    """The answer as plain data, in the form of a comparison file (docs/thesis/compare.md)."""
+    """The answer as plain data, in the form of a comparison file (docs/thesis/methods.md)."""
     summaries = comparison.summaries()
     data = {
         "format": "zerorev.comparison/1",

@@ -161,7 +161,7 @@ def methods_named(names: Sequence[str]) -> dict[str, Method]:
             raise InputError(
                 f"{name} needs {method.needs}, which is not installed",
                 where="methods",
-                accepted="pip install 'zerorev[compare]'",
+                accepted="pip install 'zerorev[methods]'",
             )
         found[name] = method
     return found

@@ -9,12 +9,13 @@ from typing import Any
 from zerorev.errors import InputError
 from zerorev.files.cell_file import cell_from_text
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json
+from zerorev.files.other_kinds import is_plan
 from zerorev.files.text import json_text
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
 from zerorev.model.ranges import Cell
 
-__all__ = ["cut", "is_plan", "job_written", "parsed", "pieces", "plan_written", "read", "read_cell", "whole"]
+__all__ = ["cut", "job_written", "parsed", "pieces", "plan_written", "read", "read_cell", "whole"]
 
 HOLES = 200  # of a piece
 BYTES = 2**20  # of a piece
@@ -31,11 +32,6 @@ def parsed(text: str, name: str) -> Job | Plan:
         InputError: neither, or one that cannot be used.
     """
     return plan_from_text(text, name) if is_plan(text, name) else job_from_text(text, name)
-
-
-def is_plan(text: str, name: str) -> bool:
-    """Whether a text is JSON, as plans are and jobs are not."""
-    return text.lstrip().startswith("{") and not name.lower().endswith((".yaml", ".yml"))
 
 
 def pieces(whole: Job | Plan) -> Iterator[Any]:

@@ -7,10 +7,11 @@ from importlib import resources
 from pathlib import Path
 
 from zerorev.files.io import read_job, read_plan
+from zerorev.files.other_kinds import is_plan
 from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
-from zerorev.web.files import is_plan, parsed
+from zerorev.web.files import parsed
 from zerorev.web.state import State, opened_job, opened_map, opened_plan
 
 __all__ = ["demo", "opened", "opened_text", "shown", "with_meshes"]
