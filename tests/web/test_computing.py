@@ -17,6 +17,7 @@ from zerorev.model.job import Job, Settings
 from zerorev.planning.hole import plan, plan_deepest
 from zerorev.planning.job import plan_job
 from zerorev.planning.sequence import with_moves
+from zerorev.report.words.answer import sequence_line
 from zerorev.web import computing
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
@@ -31,6 +32,7 @@ from zerorev.web.state import (
     steered,
     with_hole,
     with_settings,
+    without_hole,
 )
 
 PATIENCE = 60.0  # [s]
@@ -80,6 +82,14 @@ def test_all_holes_are_planned_as_the_sequence_that_the_library_plans(job):
     assert state.trouble is None
     assert len({answer.motion.branch for answer in expected.holes}) == 1
     assert plan_to_json(with_moves(plan_of(state))) == plan_to_json(expected)
+    assert state.transitions == state.moves.transitions
+    assert [(move.start, move.to) for move in state.transitions] == [
+        (move.start, move.to) for move in expected.transitions
+    ]
+    line, moves, *_ = state.outcome.splitlines()
+    assert "planned" in line
+    assert moves == sequence_line(expected.transitions)
+    assert without_hole(state, job.holes[0].id).transitions == ()
 
 
 def test_deepest_of_all_holes(job):

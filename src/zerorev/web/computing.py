@@ -21,9 +21,10 @@ from zerorev.model.plan import HolePlan, Strokes
 from zerorev.planning.job import answers
 from zerorev.planning.sequence import Sequenced, sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
+from zerorev.report.words.answer import sequence_line
 from zerorev.report.words.outcome import outcome
 from zerorev.web.session import Session
-from zerorev.web.state import Progress, State, answered
+from zerorev.web.state import Moves, Progress, State, answered
 from zerorev.workers import Machines
 
 __all__ = ["Take", "Work", "certify", "keep", "plan", "plan_selected"]
@@ -286,15 +287,20 @@ def _answer(
             return None
         same = {hole.id for hole in now.holes if hole is asked.get(hole.id)}
         found = [each for each in results if isinstance(each, HolePlan)]
-        for each in results:
-            if isinstance(each, Sequenced) and len(same) == len(asked):
-                found += each.changed.values()
-                state = replace(state, order=each.order)
-        return answered(state, *(answer for answer in found if answer.hole.id in same), strokes=strokes)
+        sequences = [each for each in results if isinstance(each, Sequenced) and len(same) == len(asked)]
+        found += [answer for each in sequences for answer in each.changed.values()]
+        state = answered(state, *(answer for answer in found if answer.hole.id in same), strokes=strokes)
+        for each in sequences:
+            state = replace(state, order=each.order, moves=Moves(each.transitions, state.answers))
+        return state
 
     def said(state: State, seconds: float) -> str:
         found = (state.answers[key] for key in ids if key in state.answers)
-        return "\n".join((outcome(done, found, seconds, proven=done == "proven"), *helps))
+        said = [outcome(done, found, seconds, proven=done == "proven")]
+        if state.transitions:
+            said.append(sequence_line(state.transitions))
+            said += [each.message for move in state.transitions for each in move.findings if each.level == "error"]
+        return "\n".join((*said, *helps))
 
     which = f"hole {ids[0]}" if len(ids) == 1 else f"{len(ids)} holes" if ids else "the sequence"
     work.start(f"{what} {which}", max(len(ids), 1), run, take, said=said if len(ids) > 1 else None)

@@ -14,7 +14,7 @@ from zerorev.maps.replan import job_of
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.plan import HolePlan, Plan, Strokes, named_holes
+from zerorev.model.plan import HolePlan, Plan, Strokes, Transition, named_holes
 from zerorev.model.profile import Profile
 from zerorev.planning.job import unanswered
 from zerorev.planning.likely_mistakes import likely_mistakes
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from zerorev.report.scene.urdf_meshes import Mesh
 
 __all__ = [
+    "Moves",
     "Progress",
     "State",
     "Steered",
@@ -80,6 +81,14 @@ class Progress:
 
 
 @dataclass(frozen=True)
+class Moves:
+    """The moves between the holes, and the answers that they lead to and from: of others they say nothing."""
+
+    transitions: tuple[Transition, ...] = ()
+    answers: Mapping[str, HolePlan] = field(default_factory=lambda: NONE)
+
+
+@dataclass(frozen=True)
 class State:
     """What a page shows.
 
@@ -94,6 +103,7 @@ class State:
         outcome: what the last work on many holes came to, in one sentence, or None.
         caution: what is probably wrong with the job, and what was left out where it was read, one per line, or None.
         order: ids of the holes as they are drilled, as far as that was planned; those behind follow as listed.
+        moves: between the holes, as they were last computed.
         lacking: what the plan that was opened says of holes that it does not have, or None.
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
@@ -110,6 +120,7 @@ class State:
     outcome: str | None = None
     caution: str | None = None
     order: tuple[str, ...] = ()
+    moves: Moves = field(default_factory=Moves)
     lacking: Finding | None = None
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
@@ -126,6 +137,11 @@ class State:
     def unplanned(self) -> tuple[str, ...]:
         """Ids of the holes that have no answer yet."""
         return () if self.job is None else tuple(hole.id for hole in self.job.holes if hole.id not in self.answers)
+
+    @property
+    def transitions(self) -> tuple[Transition, ...]:
+        """The moves between the holes, as long as no answer has changed since they were computed."""
+        return self.moves.transitions if self.moves.answers is self.answers else ()
 
     @property
     def answer(self) -> HolePlan | None:
@@ -150,7 +166,8 @@ def opened_plan(plan: Plan) -> State:
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
     said = [replace(each, message=f"{each.message} (of the plan that was opened)") for each in plan.findings]
     lacking = next((each for each in said if each.kind == "unfinished"), None)
-    return State(job, answers, holes[0].id, strokes=plan.strokes, order=plan.order, lacking=lacking)
+    moves = Moves(plan.transitions, answers)
+    return State(job, answers, holes[0].id, strokes=plan.strokes, order=plan.order, moves=moves, lacking=lacking)
 
 
 def opened_map(cells: MapSlice) -> State:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +13,7 @@ from rich.text import Text
 
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.plan import HolePlan, Plan, Transition
 from zerorev.report.words import tables, terminal
 from zerorev.report.words.lost_motion import PREDICTED
 
@@ -133,7 +133,7 @@ class Shown:
         if self._weighed:
             lines.append(Text(f"lost motion: {PREDICTED}"))
         if self._plan.transitions:
-            lines.append(Text(sequence_line(self._plan)))
+            lines.append(Text(sequence_line(self._plan.transitions, self._plan.cycle_time)))
         return lines + tables.finding_lines(self._findings)
 
     def _summary(self, worst: HolePlan) -> Iterator[str]:
@@ -150,15 +150,19 @@ class Shown:
             yield f"worst hole: {worst.hole.id} ({why})"
 
 
-def sequence_line(plan: Plan) -> str:
-    """The moves between the holes of a plan, and what all of it takes."""
-    moves = plan.transitions
+def sequence_line(moves: Sequence[Transition], cycle_time: float | None = None) -> str:
+    """The moves between holes, and what all of a plan takes.
+
+    Args:
+        moves: between the holes.
+        cycle_time: of holes and moves together [s]; None: not to be said.
+    """
     changes = sum(move.changes_posture for move in moves)
     text = (
         f"{len(moves)} move{'s' if len(moves) > 1 else ''} between holes, {sum(move.time for move in moves):.1f} s, "
         f"{changes or 'no'} change{'' if changes == 1 else 's'} of posture"
     )
-    return text if plan.cycle_time is None else f"{text}; cycle time {minutes(plan.cycle_time)}"
+    return text if cycle_time is None else f"{text}; cycle time {minutes(cycle_time)}"
 
 
 def minutes(seconds: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -12,7 +12,7 @@ from nicegui import events, ui
 
 from zerorev.errors import InputError
 from zerorev.model.hole import Hole
-from zerorev.model.plan import HolePlan
+from zerorev.model.plan import HolePlan, Transition
 from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching
 from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings
@@ -221,12 +221,12 @@ def _findings(session: Session, table: _Table) -> None:
 
     def draw() -> None:
         state = session.state
-        listed.set_content(_words(state.hole, state.answer) + _others(table.rows, state.selected))
+        listed.set_content(_words(state.hole, state.answer, state.transitions) + _others(table.rows, state.selected))
 
     soon = throttled(draw, 0.3)
 
     def changed(before: State, after: State) -> None:
-        if before.answer is not after.answer or before.selected != after.selected:
+        if before.answer is not after.answer or before.selected != after.selected or before.moves is not after.moves:
             draw()
         elif before.answers is not after.answers or before.job is not after.job:
             soon()
@@ -235,10 +235,11 @@ def _findings(session: Session, table: _Table) -> None:
     session.watch(changed)
 
 
-def _words(hole: Hole | None, answer: HolePlan | None) -> str:
+def _words(hole: Hole | None, answer: HolePlan | None, moves: Sequence[Transition]) -> str:
     if hole is None or answer is None:
         return '<p class="zr-muted">not planned yet</p>'
-    found = sorted(hole_findings(answer), key=lambda finding: list(MARKS).index(finding.level))
+    between = (finding for move in moves for finding in move.findings if finding.hole == hole.id)
+    found = sorted((*hole_findings(answer), *between), key=lambda finding: list(MARKS).index(finding.level))
     if not found:
         return f'<p class="zr-muted">no findings for this hole</p>{_lost_motion(answer)}'
     lines = "".join(
