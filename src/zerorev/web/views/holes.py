@@ -235,7 +235,7 @@ def _findings(session: Session, table: _Table) -> None:
     session.watch(changed)
 
 
-def _words(hole: Hole | None, answer: HolePlan | None, moves: Sequence[Transition]) -> str:
+def _words(hole: Hole | None, answer: HolePlan | None, moves: Sequence[Transition] = ()) -> str:
     if hole is None or answer is None:
         return '<p class="zr-muted">not planned yet</p>'
     between = (finding for move in moves for finding in move.findings if finding.hole == hole.id)
