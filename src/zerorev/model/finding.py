@@ -41,6 +41,7 @@ FindingKind = Literal[
     "normals",
     "posture_change",
     "printable",
+    "program_size",
     "rejected",
     "resampled",
     "reversal",

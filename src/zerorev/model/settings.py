@@ -301,6 +301,16 @@ class Settings:
             label="base number",
         ),
     ] = None
+    holes_per_program: Annotated[
+        int | None,
+        Whole(
+            "most holes of one file: a longer program is split into parts, which it calls",
+            none="all are in one file",
+            least=1,
+            most=1_000_000,
+            label="holes per program",
+        ),
+    ] = None
     robroot: str | tuple[float, ...] | None = None
     external_axes: tuple[ExternalAxis, ...] = ()
     calls: Calls = NO_CALLS

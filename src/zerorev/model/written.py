@@ -20,11 +20,18 @@ class Statement:
         words: names and signs in capitals, and numbers.
         line: of the file, from 1.
         source: as it stands there, without comment and surplus white space.
+        file: name of the file; empty where the program is one file.
     """
 
     words: tuple[Word, ...]
     line: int = field(compare=False)
     source: str = field(compare=False)
+    file: str = field(default="", compare=False)
+
+    @property
+    def at(self) -> str:
+        """Where it stands, in words."""
+        return f"{self.file}, line {self.line}" if self.file else f"line {self.line}"
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,7 @@ class WrittenHole:
         moves: the straight moves from there on; the last one ends in an exact stop.
         statements: all of them, from the move to the first point on.
         way: those before it, which lead there from the hole before.
+        file: name of the file; empty where the program is one file.
     """
 
     line: int = field(compare=False)
@@ -61,6 +69,7 @@ class WrittenHole:
     moves: tuple[WrittenMove, ...]
     statements: tuple[Statement, ...]
     way: tuple[Statement, ...] = ()
+    file: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -72,8 +81,10 @@ class WrittenProgram:
         tool_mm_deg: the tool frame in the flange frame, as a point.
         base_mm_deg: the part frame in the robot's base frame, as a point.
         holes: in order.
-        head: all statements before the first hole.
-        tail: all after the last one.
+        head: all statements before the first hole; of a program of several files, all outside of holes but for the
+            end of the last file.
+        tail: all after the last hole.
+        parts: how many holes each of its parts has; empty where it is one file.
     """
 
     name: str = field(compare=False)  # in capitals it is in the head
@@ -82,6 +93,7 @@ class WrittenProgram:
     holes: tuple[WrittenHole, ...]
     head: tuple[Statement, ...]
     tail: tuple[Statement, ...] = ()
+    parts: tuple[int, ...] = ()
 
 
 class Drilled(NamedTuple):

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 
 from zerorev.errors import InputError, NotExportableError
 from zerorev.model.plan import Plan
@@ -63,8 +64,8 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
     return Expected(plan, dialect, refused, moving, program, holes)
 
 
-def _read_again(program: Program, dialect: Dialect) -> WrittenProgram:
-    return dialect.read(dialect.write(program, dialect.program_name(program.name), (), "as read back"))
+def _read_again(program: Program, dialect: Dialect, name: str = "") -> WrittenProgram:
+    return dialect.read(dialect.write(program, dialect.program_name(name or program.name), (), "as read back"))
 
 
 def _with_end(plan: Plan, program: WrittenProgram) -> WrittenProgram:
@@ -72,7 +73,7 @@ def _with_end(plan: Plan, program: WrittenProgram) -> WrittenProgram:
     last = program.holes[-1]
     count = len(plan.settings.calls.after_job) + 1
     calls = last.statements[-count:]
-    if count == 1 or program.tail or calls[0].line <= last.moves[-1].line:
+    if count == 1 or program.tail or program.parts or calls[0].line <= last.moves[-1].line:
         return program
     last = replace(last, statements=last.statements[:-count])
     return replace(program, holes=(*program.holes[:-1], last), tail=calls)
@@ -109,7 +110,7 @@ class Expected:
         around: dict[str, tuple[str, ...]] = {}
         kept = tuple(hole_id for hole_id in self.holes if drilled[hole_id] is not None)
         try:
-            wanted = self._of(kept)
+            wanted = self._of(kept, program, drilled)
         except NotExportableError as refusal:  # a move between two holes
             before += tuple(f"export refuses these holes one after the other: {why}" for why in refusal.reasons)
         else:
@@ -121,12 +122,21 @@ class Expected:
             for hole in self.plan.holes
         )
 
-    def _of(self, kept: tuple[str, ...]) -> WrittenProgram | None:
-        """The program of some of the holes, on which its head and the ways between them depend; None of no holes."""
-        if len(kept) in (0, len(self.holes)):
+    def _of(
+        self, kept: tuple[str, ...], program: WrittenProgram, drilled: Mapping[str, WrittenHole | None]
+    ) -> WrittenProgram | None:
+        """The program of some of the holes, on which its head and the ways between them depend; None of no holes.
+
+        It is split into parts as the one that was read, of which any number of holes is right.
+        """
+        if not kept or (len(kept) == len(self.holes) and not program.parts):
             return self.program if kept else None
-        program = build_program(self.plan, skip_failed=True, only=kept)
-        return _with_end(self.plan, _read_again(program, self.dialect))
+        wanted = build_program(self.plan, skip_failed=True, only=kept)
+        if not program.parts:
+            return _with_end(self.plan, _read_again(wanted, self.dialect))
+        files = [hole.file for hole_id in kept if (hole := drilled[hole_id])]
+        parts = tuple(len(list(same)) for _, same in groupby(files))
+        return _read_again(replace(wanted, parts=parts), self.dialect, program.name)
 
     def _around(
         self,
@@ -150,7 +160,9 @@ class Expected:
             return Drilled(None)
         if (wanted := self.holes.get(hole_id)) is None:
             why = self.refused.get(hole_id) or self.refused.get(None, "no reason given")
-            return Drilled(hole, (f"line {hole.line}: the program drills this hole, which export refuses: {why}",))
+            return Drilled(
+                hole, (f"{hole.statements[0].at}: the program drills this hole, which export refuses: {why}",)
+            )
         return Drilled(hole, (*before, *_differences(hole.statements, wanted.statements, self.dialect)))
 
 
@@ -206,13 +218,14 @@ def _differences(
     count = 0
     for own, other in zip(found, wanted, strict=False):
         if not dialect.alike(own.words, other.words):
-            yield f"line {own.line}: '{own.source}' stands where the plan has '{other.source}'"
+            yield f"{own.at}: '{own.source}' stands where the plan has '{other.source}'"
             count += 1
             if count == MOST or len(found) != len(wanted):
                 return  # what follows is out of step
     for own in found[len(wanted) :]:
-        yield f"line {own.line}: '{own.source}' is not in the plan"
+        yield f"{own.at}: '{own.source}' is not in the plan"
         return
     for other in wanted[len(found) :]:
-        yield f"line {end or found[-1].line}: '{other.source}' is missing {'before' if end else 'after'} it"
+        at = f"line {end}" if end or not found else found[-1].at
+        yield f"{at}: '{other.source}' is missing {'before' if end else 'after'} it"
         return

@@ -39,6 +39,7 @@ class Dialect:
         write: (program, name, findings, version of zerorev) -> its files, the one that is started first.
         read: what `write` has written, the file that is started first; raises `InputError` at a statement of another
             form than `write` writes, for it might move the robot in a way that nobody has examined.
+        parts: of the file that is started -> the names of the others, in order.
     """
 
     name: str
@@ -49,3 +50,4 @@ class Dialect:
     check_robot: Callable[[str, str], None]
     write: Callable[[Program, str, tuple[Finding, ...], str | None], tuple[ProgramFile, ...]]
     read: Callable[[Sequence[ProgramFile]], WrittenProgram]
+    parts: Callable[[ProgramFile], tuple[str, ...]] = lambda file: ()

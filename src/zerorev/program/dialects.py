@@ -59,7 +59,7 @@ def program_file(name: str, controller: str) -> str:
 
 
 def read_program(path: Path) -> WrittenProgram:
-    """Read a program that `zerorev export` has written.
+    """Read a program that `zerorev export` has written, with the parts that lie beside it.
 
     Args:
         path: of the file that is started.
@@ -67,9 +67,16 @@ def read_program(path: Path) -> WrittenProgram:
     Raises:
         InputError: a file that cannot be read, or a statement that `export` does not write.
     """
+    main = _file(path)
+    dialect = dialect_of(path)
+    names = dialect.parts(main)
+    beside = {each.name.lower(): each for each in path.parent.iterdir()} if names else {}
+    parts = [_file(beside.get(name.lower(), path.with_name(name))) for name in names]
+    return dialect.read((main, *parts))
+
+
+def _file(path: Path) -> ProgramFile:
     known = ", ".join(f"{each.name}, {each.suffix}" for each in DIALECTS.values())
     content = read_bytes(path, f"a program that zerorev has exported ({known})", MOST_BYTES)
-    dialect = dialect_of(path)
     # byte by byte, so that a message can name the line of one that is not ASCII
-    text = content.removeprefix(BYTE_ORDER_MARK).decode("latin-1")
-    return dialect.read((ProgramFile(str(path), text),))
+    return ProgramFile(str(path), content.removeprefix(BYTE_ORDER_MARK).decode("latin-1"))

@@ -18,6 +18,8 @@ from zerorev.workers import Machines, Workers
 
 __all__ = ["Exported", "export", "exporting"]
 
+LONG, LARGE = 5_000, 4_000_000  # lines, bytes of one file
+
 
 @dataclass(frozen=True)
 class Exported:
@@ -48,6 +50,7 @@ def export(
     skip_failed: bool = False,
     name: str | None = None,
     plan_file: str = "",
+    holes_per_program: int | None = None,
     version: str | None = None,
     workers: int | None = 1,
     progress: Callable[[int, int], None] | None = None,
@@ -64,6 +67,7 @@ def export(
         name: of the program; by default the plan's.
         plan_file: name of the file that the plan is in; it stands in the program, so that the next export of the plan
             may replace it.
+        holes_per_program: most holes of one file, in place of the plan's own setting.
         version: of zerorev, for the comment block; by default the installed one.
         workers: processes that check the holes; the program is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
@@ -74,7 +78,14 @@ def export(
             error.
     """
     steps = exporting(
-        plan, controller, skip_failed=skip_failed, name=name, plan_file=plan_file, version=version, workers=workers
+        plan,
+        controller,
+        skip_failed=skip_failed,
+        name=name,
+        plan_file=plan_file,
+        holes_per_program=holes_per_program,
+        version=version,
+        workers=workers,
     )
     checked = 0
     while True:
@@ -95,6 +106,7 @@ def exporting(
     skip_failed: bool = False,
     name: str | None = None,
     plan_file: str = "",
+    holes_per_program: int | None = None,
     version: str | None = None,
     workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
@@ -103,11 +115,34 @@ def exporting(
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
     verified = yield from _verified(plan, workers)
     program = build_program(verified, skip_failed=skip_failed, plan_file=plan_file)
+    program = replace(program, parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program))
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))
     called = dialect.program_name(name or plan.name)
-    return Exported(dialect.write(program, called, findings, version), findings, called, len(program.holes))
+    files = dialect.write(program, called, findings, version)
+    return Exported(files, (*findings, *_sizes(files)), called, len(program.holes))
+
+
+def _parts(holes: int, most: int | None) -> tuple[int, ...]:
+    """How many holes each part has; none where all fit into one file."""
+    if most is None or holes <= most:
+        return ()
+    return (*[most] * (holes // most), *[holes % most] * (holes % most > 0))
+
+
+def _sizes(files: tuple[ProgramFile, ...]) -> tuple[Finding, ...]:
+    """What is said of files that a controller may not take, or that nobody can look through."""
+    cure = "holes_per_program in the job, or --holes-per-program, splits it into parts"
+    found = []
+    for file in files:
+        lines, size = file.text.count("\n"), len(file.text)
+        if size > LARGE:
+            message = f"{file.name} has {size / 1e6:.1f} MB: a controller may not load more than 4 MB; {cure}"
+            found.append(Finding("warning", "program_size", message))
+        elif lines > LONG:
+            found.append(Finding("info", "program_size", f"{file.name} has {lines:,} lines; {cure}"))
+    return tuple(found)
 
 
 def _verified(plan: Plan, workers: int | None) -> Generator[None, None, Plan]:

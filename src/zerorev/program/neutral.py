@@ -25,7 +25,7 @@ from zerorev.program.plan_mark import plan_mark
 from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
 from zerorev.program.ways import Stop, stop_of
 
-__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals"]
+__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals", "split"]
 
 T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
 """The tool frame as written, in the tcp frame."""
@@ -125,6 +125,7 @@ class Program:
         load: what hangs on the flange; None: not known.
         listed: how many holes the plan has.
         plan_file: name of the file that the plan is in; empty: of none.
+        parts: how many holes each of the files has into which it is split; empty: it is one file.
     """
 
     name: str
@@ -142,6 +143,7 @@ class Program:
     load: Load | None = None
     listed: int = 0
     plan_file: str = ""
+    parts: tuple[int, ...] = ()
 
     @property
     def mark(self) -> str:
@@ -198,6 +200,23 @@ def build_program(
         load=plan.tool.load,
         listed=len(plan.holes),
         plan_file=plan_file,
+    )
+
+
+def split(program: Program) -> tuple[Program, ...]:
+    """The parts of a program, each with its own holes; none where it is one file.
+
+    A part begins where the one before it ends, and only the last one leads away from its last hole.
+    """
+    ends = np.cumsum(program.parts)
+    return tuple(
+        replace(
+            program,
+            holes=program.holes[end - size : end],
+            end=program.end if end == len(program.holes) else program.end[:0],
+            parts=(),
+        )
+        for size, end in zip(program.parts, ends, strict=True)
     )
 
 

@@ -8,9 +8,9 @@ from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.names import identifier
-from zerorev.program.krl.read import read_krl
+from zerorev.program.krl.read import parts_called, read_modules
 from zerorev.program.krl.source import alike
-from zerorev.program.krl.write import refuse_other_makers, to_krl
+from zerorev.program.krl.write import krl_modules, refuse_other_makers
 from zerorev.program.neutral import Program
 
 __all__ = ["KRL"]
@@ -19,11 +19,16 @@ SUFFIX = ".src"
 
 
 def _write(program: Program, name: str, findings: tuple[Finding, ...], version: str | None) -> tuple[ProgramFile, ...]:
-    return (ProgramFile(name + SUFFIX, to_krl(program, name=name, findings=findings, version=version)),)
+    modules = krl_modules(program, name=name, findings=findings, version=version)
+    return tuple(ProgramFile(each + SUFFIX, text) for each, text in modules.items())
 
 
 def _read(files: Sequence[ProgramFile]) -> WrittenProgram:
-    return read_krl(files[0].text, files[0].name)
+    return read_modules([(file.text, file.name) for file in files])
 
 
-KRL = Dialect("krl", "KUKA", SUFFIX, alike, identifier, refuse_other_makers, _write, _read)
+def _parts(file: ProgramFile) -> tuple[str, ...]:
+    return tuple(name + SUFFIX for name in parts_called(file.text, file.name))
+
+
+KRL = Dialect("krl", "KUKA", SUFFIX, alike, identifier, refuse_other_makers, _write, _read, _parts)

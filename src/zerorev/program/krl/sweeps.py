@@ -8,9 +8,10 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.program.krl.controller import AXIS_DECIMALS
+from zerorev.program.krl.head import RULE
 from zerorev.program.krl.names import identifier, label
 from zerorev.program.krl.text import aggregate, clean, comment, fixed
-from zerorev.program.krl.write import PTP_ACCELERATION, PTP_SPEED, RULE, refuse_other_makers
+from zerorev.program.krl.write import PTP_ACCELERATION, PTP_SPEED, refuse_other_makers
 from zerorev.program.sweeps import AMPLITUDE, Sweep, Sweeps
 
 __all__ = ["sweeps_to_krl"]

@@ -7,7 +7,6 @@ act over a lever of a metre or more and have more; a REAL of the controller hold
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from importlib.metadata import version as installed_version
 
 import numpy as np
@@ -16,8 +15,9 @@ from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.program.krl.controller import axis_target, called, frames_and_load, header, not_set, refuse_calls
-from zerorev.program.krl.names import LONGEST_ID, identifier, label
+from zerorev.program.krl.controller import axis_target, called, frames_and_load, header, refuse_calls
+from zerorev.program.krl.head import head, part_head
+from zerorev.program.krl.names import identifier, label, part_name
 from zerorev.program.krl.text import (
     aggregate,
     axis_angles,
@@ -27,30 +27,16 @@ from zerorev.program.krl.text import (
     settled,
     turn_about_x,
 )
-from zerorev.program.neutral import HoleProgram, LinearMove, Program
+from zerorev.program.neutral import HoleProgram, LinearMove, Program, split
 from zerorev.program.notes import notes, turn_speed
-from zerorev.program.plan_mark import MARK
 
-__all__ = ["to_krl"]
+__all__ = ["krl_modules", "refuse_other_makers", "to_krl"]
 
 PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves are not checked for collisions
 LEAST_TURN_SPEED = 200.0  # [deg/s]
 TURN_SPEED_RESERVE = 1.2
 SPEED_DECIMALS = 6
-RULE = "; " + "-" * 98
-
-SAFETY = (
-    "Run the program in T1 first, the spindle off and no part in place.",
-    "PTP moves are checked against the surface of the part alone, and the first one not at all: not for fixtures, "
-    "the cell or the arm's own links.",
-    "$TOOL, $BASE and the speeds are set at the top: after a reset do not start from a line further down.",
-    "After a stop in a hole pull the drill out along the drill axis (tool X) before a new start: a PTP comes first.",
-)
-
-FRAMES = (
-    "$TOOL has X along the plunge, so A and B are constant along a hole and only C varies: it falls by as much as psi "
-    "grows. C is written within (-180, 180]. No LIN turns the tool by more than 120 deg: the short way round is meant.",
-)
+EXT_BAS = "EXT BAS (BAS_COMMAND :IN,REAL :IN )"
 
 
 def to_krl(
@@ -60,7 +46,7 @@ def to_krl(
     findings: tuple[Finding, ...] | None = None,
     version: str | None = None,
 ) -> str:
-    """The text of a .src file; the file must be called like the program in it.
+    """The text of the .src file that is started; the file must be called like the program in it.
 
     Args:
         program: what to write.
@@ -71,23 +57,54 @@ def to_krl(
     Raises:
         NotExportableError: the robot is not a KUKA.
     """
+    return next(iter(krl_modules(program, name=name, findings=findings, version=version).values()))
+
+
+def krl_modules(
+    program: Program,
+    *,
+    name: str | None = None,
+    findings: tuple[Finding, ...] | None = None,
+    version: str | None = None,
+) -> dict[str, str]:
+    """The text of each module by its name, the one that is started first; the arguments are those of `to_krl`.
+
+    Raises:
+        NotExportableError: the robot is not a KUKA; a call that would be something else.
+    """
+    called_so, version = identifier(name or program.name), version or installed_version("zerorev")
+    parts = {part_name(called_so, n): part for n, part in enumerate(split(program), start=1)}
     refuse_other_makers(program.manufacturer, program.robot)
-    refuse_calls(program, [name or program.name])
+    refuse_calls(program, [called_so, *parts])
     calls = program.settings.calls
-    lines = [
-        *header(program.settings.header),
-        f"DEF {identifier(name or program.name)} ( )",
-        *_head(program, notes(program) if findings is None else findings, version or installed_version("zerorev")),
-        "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
-        *_settings(program),
-        *called(calls.before_job),
-    ]
+    begin = head(program, notes(program) if findings is None else findings, version)
+    if not parts:
+        body = [*_settings(program), *called(calls.before_job), *_moves(program), *called(calls.after_job)]
+        return {called_so: _module(program, called_so, begin, [EXT_BAS, *body])}
+    steps = [f"{part}( )" for part in parts]
+    modules = {
+        called_so: _module(program, called_so, begin, [*called(calls.before_job), *steps, *called(calls.after_job)])
+    }
+    for number, (called_as, part) in enumerate(parts.items(), start=1):
+        title = f"Part {number} of {len(parts)} of {called_so}, which starts it: {len(part.holes)} holes"
+        body = [EXT_BAS, *_settings(program), *_moves(part)]
+        modules[called_as] = _module(program, called_as, part_head(program, title, version), body)
+    return modules
+
+
+def _module(program: Program, name: str, comments: list[str], body: list[str]) -> str:
+    return "\n".join([*header(program.settings.header), f"DEF {name} ( )", *comments, *body, "END", ""])
+
+
+def _moves(program: Program) -> list[str]:
+    """The holes, and what leads away from the last one."""
+    lines = []
     for hole in program.holes:
         lines += _hole(hole, f"Hole {hole.number} of {program.listed}", program.settings)
     if len(program.end):
         away = [_ptp(joints, program.settings) for joints in program.end]
         lines += [";FOLD Away from the last hole", *away, ";ENDFOLD"]
-    return "\n".join([*lines, *called(calls.after_job), "END", ""])
+    return lines
 
 
 def refuse_other_makers(manufacturer: str, robot: str) -> None:
@@ -100,48 +117,6 @@ def refuse_other_makers(manufacturer: str, robot: str) -> None:
         by = f"by {manufacturer}" if manufacturer.strip() else "of a maker that its file does not name"
         why = f"the robot {robot} is {by}, and KRL runs on KUKA controllers alone (manufacturer: KUKA in its file)"
         raise NotExportableError((why,))
-
-
-def _head(program: Program, findings: tuple[Finding, ...], version: str) -> list[str]:
-    """The comment block: what an operator should read before pressing start."""
-    settings = program.settings
-    spindle = "not given" if settings.spindle_rpm is None else f"{settings.spindle_rpm:g} rev/min"
-    blend = f"{settings.blend * 1e3:g} mm" if settings.blend > 0 else "none: exact stop"
-    deepened = ", corner placed deeper by the depth lost to the blend" if settings.deepen_corner else ""
-    reversals = sum(sum(hole.reversals_per_joint) for hole in program.holes)
-    facts = (
-        ("Plan      ", program.name),
-        ("Robot     ", f"{program.manufacturer} {program.model} ({program.robot})"),
-        ("Tool      ", program.tool),
-        ("Feeds     ", f"plunge {settings.feed_plunge * 1e3:g} mm/s, retract {settings.feed_retract * 1e3:g} mm/s"),
-        ("Spindle   ", spindle),
-        ("Blend     ", f"{blend} at the target{deepened}"),
-        ("Holes     ", f"{len(program.holes)}, with {reversals} joint reversals in all"),
-    )
-    ids = {hole.id for hole in program.holes} | {finding.hole for finding in findings if finding.hole is not None}
-    lines = [RULE, *comment(f"Written by zerorev {version}"), *_mark(program)]
-    for first, text in facts:
-        lines += comment(text, first=first, longest=3 * LONGEST_ID)
-    for finding in findings:
-        at = f"hole {label(finding.hole)}: " if finding.hole is not None else ""
-        lines += comment(at + _with_labels(finding.message, ids), first=f"{finding.level}: ".ljust(10))
-    lines.append(";")
-    for text in (*SAFETY[:2], *not_set(settings), *SAFETY[2:], *FRAMES):
-        lines += comment(text, first="- ")
-    return [*lines, RULE]
-
-
-def _mark(program: Program) -> list[str]:
-    """Whose program this is, as `plan_mark` finds it again."""
-    return comment(f"{program.mark} {program.plan_file}", first=MARK) if program.plan_file else []
-
-
-def _with_labels(message: str, ids: Iterable[str]) -> str:
-    """A message with ids that a comment cannot have as they are called as elsewhere in the program."""
-    for hole_id in sorted(ids, key=len, reverse=True):
-        if (called := label(hole_id)) != hole_id:
-            message = message.replace(hole_id, called)
-    return message
 
 
 def _settings(program: Program) -> list[str]:

@@ -67,7 +67,8 @@ def certify_program_hole(
     if wrong or motion is None or score is None:
         return nothing("refuted", wrong)
     at = places(plan, hole_plan, program, written)
-    wrong = (*differs, *frames_as_planned(plan, program), *moves_as_planned(plan, hole_plan, motion, written, at))
+    moves = (_in_file(written, each) for each in moves_as_planned(plan, hole_plan, motion, written, at))
+    wrong = (*differs, *frames_as_planned(plan, program), *moves)
     if wrong:
         return nothing("refuted", wrong)
 
@@ -87,4 +88,10 @@ def certify_program_hole(
         path = written_motion(
             plan.robot.arm, program, written, hole_plan.hole, at, root if isinstance(root, tuple) else None
         )
-        return prove(plan.robot, path, first, claimed_reversals(score), on_other_turns)
+        proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns)
+    return replace(proof, reasons=tuple(_in_file(written, reason) for reason in proof.reasons))
+
+
+def _in_file(written: WrittenHole, reason: str) -> str:
+    """A reason with the file whose lines it names, where the program has several."""
+    return f"{written.file}: {reason}" if written.file else reason
