@@ -87,7 +87,9 @@ def _travel(alone: list[zr.HolePlan], found: Sequenced) -> float:
 def _times(job: Job, alone: list[zr.HolePlan], found: Sequenced) -> np.ndarray:
     """Time from the end of each hole's motion to the begin of each other's [s], shape (H, H)."""
     final = [found.changed.get(n, answer) for n, answer in enumerate(alone)]
-    stops = [stop_of(job.robot, job.tool, job.settings, hole.hole, hole.motion) for hole in final if hole.motion is not None]
+    stops = [
+        stop_of(job.robot, job.tool, job.settings, hole.hole, hole.motion) for hole in final if hole.motion is not None
+    ]
     start, end = (
         np.array([side(stop.way) for stop in stops]) for side in (lambda w: w.arrival[0], lambda w: w.departure[-1])
     )

@@ -131,6 +131,7 @@ def test_the_defaults_of_the_file_are_those_of_the_settings(tmp_path: Path) -> N
 
 def test_every_setting_arrives(tmp_path: Path) -> None:
     text = CSV_JOB + (
+        "limit_margin_deg: 1.5\n"
         "name: panel\nmin_rate_deg_per_mm: 0\nmin_rate_rule: mean\npsi_bound_deg: 180\nobjective: margin\n"
         "legs: free\nmax_twist_deg_per_mm: 12\n"
         "reversal_weights: [1, 2, 3, 4, 5, 6]\nnear_joints_deg: [0, -90, 90, 0, 0, 180]\nblend_mm: 1\n"
@@ -140,6 +141,7 @@ def test_every_setting_arrives(tmp_path: Path) -> None:
     job = job_of(tmp_path, text.replace("tool: thesis_drill\n", ""), holes=CSV)
     assert job.name == "panel"
     assert job.settings == Settings(
+        limit_margin=np.deg2rad(1.5),
         min_rate=0.0, min_rate_rule="mean", psi_bound=np.pi, legs="free", max_twist=np.deg2rad(12e3),
         objective="margin", reversal_weights=(1, 2, 3, 4, 5, 6),
         near_joints=tuple(np.deg2rad([0, -90, 90, 0, 0, 180])), blend=1e-3, blend_shortfall=4e-4, deepen_corner=True,

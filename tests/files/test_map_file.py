@@ -9,6 +9,7 @@ import yaml
 from zerorev.errors import InputError
 from zerorev.files.map_file import read_map_file
 from zerorev.maps.chunks import Chunks
+from zerorev.model.job import Settings
 from zerorev.model.map_task import cone, sphere
 
 PLANE = {
@@ -33,6 +34,18 @@ def test_a_box(tmp_path):
     assert task.axes[1].tolist() == list(range(-400, 401, 100))
     assert task.target_mm(1).tolist() == [500, -400, 400]
     assert task.directions[1] == pytest.approx(np.array([1, 0, -1]) / np.sqrt(2))
+
+
+def test_its_settings_are_those_of_a_job(tmp_path):
+    assert read(tmp_path).question.settings == Settings()
+    given = {"legs": "free", "min_rate_deg_per_mm": 0.02, "psi_bound_deg": 90, "max_twist_deg_per_mm": 3}
+    task = read(tmp_path, limit_margin_deg=2.5, **given)
+    assert task.question.settings == Settings(
+        legs="free", min_rate=np.deg2rad(20.0), psi_bound=np.pi / 2, max_twist=np.deg2rad(3e3),
+        limit_margin=np.deg2rad(2.5),
+    )  # fmt: skip
+    with pytest.raises(InputError, match="limit_margin_deg"):
+        read(tmp_path, limit_margin_deg=500)  # no joint has so wide a range
 
 
 def test_a_range_ends_where_a_step_meets_its_stop(tmp_path):

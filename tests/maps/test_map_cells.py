@@ -49,6 +49,22 @@ def test_deepest(robot, tool, tmp_path):
         assert int(found["status"].isel(at)) == STATUS.index("answered")
 
 
+def test_room_at_the_joint_limits(robot, tool, tmp_path):
+    """The strokes are those of a robot with narrower limits, and the map says with which margin it was made."""
+    settings = replace(FREE, limit_margin=np.deg2rad(25.0))
+    found = mapped(Question(robot, tool, settings=settings), tmp_path)
+    assert question_of(found).settings == settings
+    limits = robot.limits
+    lower, upper = limits.lower + settings.limit_margin, limits.upper - settings.limit_margin
+    narrow = replace(robot, limits=replace(limits, lower=lower, upper=upper))
+    wide = []
+    for at in cells(found):
+        hole = replace(hole_of(found, **at), profile=None, branch=None)
+        assert float(found["deepest_mm"].isel(at)) == deepest_stroke(narrow, tool, hole, FREE).depth * 1e3
+        wide.append(deepest_stroke(robot, tool, hole, FREE).depth * 1e3 - float(found["deepest_mm"].isel(at)))
+    assert max(wide) > 0.1
+
+
 @pytest.mark.parametrize(
     ("quantity", "objective"),
     [("fewest_reversals", "travel"), ("least_travel", "travel"), ("greatest_margin", "margin")],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import random
 import shutil
@@ -159,6 +160,21 @@ def test_another_map_is_refused_with_the_difference_named(change, said, task, tm
         run_map(change(task), path, HERE)
     assert said in str(refused.value)
     assert content(path) == before
+
+
+def test_a_map_of_before_a_setting_existed_was_made_with_its_default(task, straight, tmp_path):
+    path = tmp_path / "map.zarr"
+    with pytest.raises(KeyboardInterrupt):
+        stopped_after(2, [], task, path)
+    head = path / "zarr.json"
+    data = json.loads(head.read_text())
+    assert data["attributes"]["settings"].pop("limit_margin_deg") == 0
+    head.write_text(json.dumps(data))
+    other = replace(task.question, settings=replace(task.question.settings, limit_margin=0.1))
+    with pytest.raises(InputError, match=r"settings.limit_margin_deg is 0.0, not 5.7"):
+        run_map(replace(task, question=other), path, HERE)
+    run_map(task, path, HERE)
+    assert content(path).keys() == straight.keys()
 
 
 def test_what_is_not_a_map_is_left_alone(task, tmp_path):

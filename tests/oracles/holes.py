@@ -42,7 +42,7 @@ class Drilled:
     @property
     def both(self):
         """Robot, tool and hole as one, and the settings."""
-        return Drilling(self.robot, self.tool, self.hole), self.settings
+        return Drilling(self.robot, self.tool, self.hole, self.settings.limit_margin), self.settings
 
     def deep(self, depth):
         """The same with another stroke [m]."""

@@ -52,7 +52,7 @@ def compared(plan: Plan, hole: HolePlan, manner: Manner, names: tuple[MotionName
     """
     motion = hole.motion
     assert motion is not None
-    drilling = Drilling(plan.robot, plan.tool, hole.hole)
+    drilling = Drilling.of(plan, hole.hole)
     profile = motion.profile
     constant = profile.at_constant_spin()
     asked: dict[MotionName, Profile] = {

@@ -73,7 +73,8 @@ def map_parameters(
     from zerorev.thesis.store import write_map
 
     bound = wanted.settings.psi_bound or math.pi
-    made = partial(parameter_map, wanted.robot, wanted.tool, place, size=size, psi_range=(-bound, bound))
+    robot = replace(wanted.robot, limits=wanted.robot.allowed(wanted.settings.limit_margin))
+    made = partial(parameter_map, robot, wanted.tool, place, size=size, psi_range=(-bound, bound))
     with terminal.progress("mapping", size, each="slice") as progress:
         found = made(Weighing(turns=turns), progress=progress)
     other: Turns = "first_point" if turns == "after_extents" else "after_extents"

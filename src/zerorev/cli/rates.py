@@ -31,14 +31,14 @@ def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> 
 
     if psi_deg is not None:
         psi = math.radians(psi_deg)
-        drillings = [Drilling(wanted.robot, wanted.tool, hole) for hole in wanted.holes]
+        drillings = [Drilling.of(wanted, hole) for hole in wanted.holes]
         found = [(one.hole, each) for one in drillings for each in critical_at(one, psi)]
         if json:
             terminal.print_json([{"id": hole.id} | shown.rates_data(each) for hole, each in found])
         else:
             terminal.out().print(shown.rates_table(wanted, found))
         return FINE
-    predicted = [predict(Drilling(wanted.robot, wanted.tool, hole), wanted.settings) for hole in wanted.holes]
+    predicted = [predict(Drilling.of(wanted, hole), wanted.settings) for hole in wanted.holes]
     if json:
         pairs = zip(wanted.holes, predicted, strict=True)
         terminal.print_json([shown.predicted_data(hole, each) for hole, each in pairs])

@@ -10,13 +10,14 @@ from zerorev.errors import InputError
 from zerorev.files.conversion import tool_from
 from zerorev.files.io import read_robot, read_tool
 from zerorev.files.map_schema import MOST_CELLS, ConesForm, MapFile, RangeForm, SphereForm
+from zerorev.files.stated_forms import noun_from
 from zerorev.files.text import Document, csv_rows, read_text
-from zerorev.files.units import m, rad, rad_per_m
+from zerorev.files.units import m, rad
 from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document
 from zerorev.model._arrays import Array, unit
 from zerorev.model.job import Settings
-from zerorev.model.map_task import MapTask, Question, cone, sphere
+from zerorev.model.map_task import SETTINGS, MapTask, Question, cone, sphere
 from zerorev.model.quantity import in_words, quantity
 
 __all__ = ["read_map_file"]
@@ -57,12 +58,7 @@ def _question(form: MapFile, document: Document, folder: Path) -> Question:
     if form.seed is not None and not quantity(form.quantity).seeded:
         accepted = f"for {in_words(lambda each: each.seeded, 'and')} alone"
         raise InputError(f"is not used by {form.quantity}", where="seed", accepted=accepted)
-    settings = Settings(
-        min_rate=float(rad_per_m(form.min_rate_deg_per_mm)),
-        psi_bound=None if form.psi_bound_deg is None else float(rad(form.psi_bound_deg)),
-        legs=form.legs,
-        max_twist=float(rad_per_m(form.max_twist_deg_per_mm)),
-    )
+    settings = noun_from(Settings, form, SETTINGS)
     depth = None if form.depth_mm is None else float(m(form.depth_mm))
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
     return Question(robot, tool, form.quantity, settings, reference, depth, form.seed or 0)

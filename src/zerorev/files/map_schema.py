@@ -6,10 +6,22 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from zerorev.files.schema import Depth, Form, Length, Name, Rate, SpinBound, Three, ToolForm, Twist, kind
+from zerorev.files.schema import Depth, Form, Length, Name, Three, ToolForm, kind
+from zerorev.files.stated_forms import keys_of
+from zerorev.model.map_task import SETTINGS
 from zerorev.model.quantity import in_words, quantities
+from zerorev.model.settings import Settings
 
-__all__ = ["MOST_CELLS", "ConeForm", "ConesForm", "MapFile", "RangeForm", "SphereForm", "TargetsForm"]
+__all__ = [
+    "MOST_CELLS",
+    "ConeForm",
+    "ConesForm",
+    "MapFile",
+    "MapSettingsForm",
+    "RangeForm",
+    "SphereForm",
+    "TargetsForm",
+]
 
 MOST_CELLS = 100_000_000
 
@@ -71,7 +83,12 @@ def _directions(value: object) -> str | None:
     return ("<cone>" if "cone" in value else "<sphere>") if isinstance(value, dict) else tag
 
 
-class MapFile(Form):
+@keys_of(Settings, SETTINGS)
+class MapSettingsForm(Form):
+    """The settings that a map heeds."""
+
+
+class MapFile(MapSettingsForm):
     """A map file, YAML: a robot, a tool, targets, directions, and what is asked of each."""
 
     model_config = ConfigDict(title="zerorev map")
@@ -104,19 +121,6 @@ class MapFile(Form):
     depth_mm: Depth | None = Field(
         default=None,
         description=f"a number above 0 [mm]: the stroke; for {in_words(lambda each: each.needs_depth, 'and')} alone",
-    )
-    legs: Literal["straight", "free"] = Field(
-        default="straight", description="straight (spin linear along each leg) or free (spin varying freely along it)"
-    )
-    min_rate_deg_per_mm: Rate = Field(
-        default=0.01,
-        description="a number, 0 or more [deg/mm]: least motion of every joint per mm of path; 0 switches it off",
-    )
-    psi_bound_deg: SpinBound | None = Field(
-        default=None, description="a number above 0 [deg]: spins stay within +- this; or null: the spin is periodic"
-    )
-    max_twist_deg_per_mm: Twist = Field(
-        default=5.0, description="a number above 0 [deg/mm]: greatest twist rate of free legs"
     )
     seed: Annotated[int, Field(ge=0, le=2**63 - 1)] | None = Field(
         default=None,

@@ -6,7 +6,7 @@ Millimetres and degrees end and begin here: `noun_from` reads, `data_of` writes.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Annotated, Any, Literal, TypeVar
 
 import numpy as np
@@ -51,11 +51,14 @@ def kind(value: object) -> str | None:
     return tags.get(type(value))
 
 
-def keys_of(noun: type, *, needed: bool = False, or_null: bool = False) -> Callable[[type[F]], type[F]]:
+def keys_of(
+    noun: type, only: Collection[str] | None = None, *, needed: bool = False, or_null: bool = False
+) -> Callable[[type[F]], type[F]]:
     """Gives a form a key for each stated attribute of a noun; one that the form names keeps its place.
 
     Args:
         noun: a dataclass.
+        only: names of the attributes that get one; None: all.
         needed: whether a file has to have all of them, regardless of the defaults of the noun, but those added later.
         or_null: whether all may be null, because there is no such noun.
     """
@@ -63,7 +66,7 @@ def keys_of(noun: type, *, needed: bool = False, or_null: bool = False) -> Calla
     def with_keys(form: type[F]) -> type[F]:
         keys: dict[str, Any] = {}
         nests: dict[str, list[Stated]] = {}
-        for each in stated(noun):
+        for each in _chosen(noun, only):
             if isinstance(each, Weighed):
                 word = _word_of(noun, each)
                 keys[word.path[0]] = _word_or_weights(word, each)
@@ -83,6 +86,10 @@ def keys_of(noun: type, *, needed: bool = False, or_null: bool = False) -> Calla
 
 def _form(name: str, means: str | None, keys: dict[str, Any], base: type[F], module: str = __name__) -> type[F]:
     return create_model(name, __base__=base, __doc__=means, __module__=module, **keys)
+
+
+def _chosen(noun: type, only: Collection[str] | None) -> list[Stated]:
+    return [each for each in stated(noun) if only is None or each.name in only]
 
 
 def _word_of(noun: type, weighed: Weighed) -> Stated:
@@ -163,12 +170,21 @@ def _word_or_weights(word: Stated, weighed: Weighed) -> tuple[Any, Any]:
     return Annotated[either, Discriminator(kind)], Field(default=word.default, description=words)
 
 
-def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "", **others: Any) -> N:
+def noun_from(
+    noun: type[N],
+    form: Form,
+    only: Collection[str] | None = None,
+    *,
+    before: bool = False,
+    where: str = "",
+    **others: Any,
+) -> N:
     """The noun of a form that has the keys of its stated attributes.
 
     Args:
         noun: a dataclass.
         form: as it was read.
+        only: names of the attributes that the form has keys of; None: all.
         before: whether a key that is missing means what it meant before it existed, as in a file of answers.
         where: of the form, for messages; with a point at its end.
         others: the attributes without a statement, but those that have a default.
@@ -177,7 +193,7 @@ def noun_from(noun: type[N], form: Form, *, before: bool = False, where: str = "
         InputError: numbers that the noun does not accept, or that contradict each other.
     """
     values: dict[str, Any] = {}
-    for each in stated(noun):
+    for each in _chosen(noun, only):
         if isinstance(each, Weighed):
             value = getattr(form, _word_of(noun, each).path[0])
             if isinstance(value, Form):
@@ -216,10 +232,10 @@ def _weights(form: Form, weighed: Weighed) -> tuple[tuple[str, float], ...]:
     return weights
 
 
-def data_of(noun: Any) -> dict[str, Any]:
-    """The stated attributes of a noun as a file holds them."""
+def data_of(noun: Any, only: Collection[str] | None = None) -> dict[str, Any]:
+    """The stated attributes of a noun as a file holds them; all, or those named."""
     data: dict[str, Any] = {}
-    for each in stated(type(noun)):
+    for each in _chosen(type(noun), only):
         value = getattr(noun, each.name)
         if isinstance(each, Weighed):
             word = _word_of(type(noun), each)

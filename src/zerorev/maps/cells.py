@@ -103,7 +103,7 @@ def _write(values: Values, n: int, variable: str, found: Found) -> None:
 
 def _why_none(question: Question, hole: Hole) -> int:
     """Whether the target is reached at all, and within the joint limits."""
-    drilling = Drilling(question.robot, question.tool, hole)
+    drilling = Drilling.of(question, hole)
 
     def angles(psi_bound: float | None) -> Array:
         return drilling.angles(0.0, target_spins(psi_bound, SPINS))
@@ -111,5 +111,5 @@ def _why_none(question: Question, hole: Hole) -> int:
     if np.isnan(angles(None)).all():
         return OUT_OF_REACH
     there = angles(question.settings.psi_bound)
-    _, fits = turns_within(there, there, question.robot.limits)
+    _, fits = turns_within(there, there, drilling.limits)
     return NONE if (fits.all(axis=-1) & ~np.isnan(there).any(axis=-1)).any() else LIMITS

@@ -32,7 +32,7 @@ def stroke_found(depth: float, profile: Profile | None, branch: int | None) -> F
 
 
 def _deepest(question: Question, hole: Hole, _: int) -> Found | None:
-    found = deepest_as_drilled(Drilling(question.robot, question.tool, hole), question.settings.without_proof)
+    found = deepest_as_drilled(Drilling.of(question, hole), question.settings.without_proof)
     return stroke_found(found.depth, found.profile, found.branch)
 
 
@@ -57,14 +57,14 @@ def _greatest_margin(question: Question, hole: Hole, _: int) -> Found | None:
 
 
 def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
-    cheapest = narrowest(Drilling(question.robot, question.tool, hole), question.settings)
+    cheapest = narrowest(Drilling.of(question, hole), question.settings)
     if not np.isfinite(cheapest.width):
         return None
     return Found(float(np.rad2deg(cheapest.spread)) / 1e3, cheapest.branch, None, cheapest.psi)
 
 
 def _best_motion(question: Question, hole: Hole) -> Candidate | None:
-    return best_motion(Drilling(question.robot, question.tool, hole), question.settings.without_proof)
+    return best_motion(Drilling.of(question, hole), question.settings.without_proof)
 
 
 def _motion(value: float, best: Candidate) -> Found:

@@ -9,12 +9,14 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.conversion import robot_from, tool_from
+from zerorev.files.map_schema import MapSettingsForm
 from zerorev.files.schema import RobotForm, ToolForm
-from zerorev.files.units import m, rad, rad_per_m
+from zerorev.files.stated_forms import noun_from
+from zerorev.files.units import m, rad
 from zerorev.maps.frames import frame_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
-from zerorev.model.map_task import Question
+from zerorev.model.map_task import SETTINGS, Question
 from zerorev.model.profile import Profile
 
 if TYPE_CHECKING:
@@ -35,19 +37,14 @@ def question_of(found: Dataset) -> Question:
     attributes = found.attrs
     try:
         robot, tool, settings = (dict(attributes[name]) for name in ("robot", "tool", "settings"))
-        reference, depth_mm, bound = attributes["psi_reference"], attributes.get("depth_mm"), settings["psi_bound_deg"]
+        reference, depth_mm = attributes["psi_reference"], attributes.get("depth_mm")
         for data in (robot, tool):
             data.pop("sha256")
         return Question(
             robot_from(RobotForm.model_validate(robot)),
             tool_from(ToolForm.model_validate(tool)),
             attributes["quantity"],
-            Settings(
-                min_rate=float(rad_per_m(settings["min_rate_deg_per_mm"])),
-                psi_bound=None if bound is None else float(rad(bound)),
-                legs=settings["legs"],
-                max_twist=float(rad_per_m(settings["max_twist_deg_per_mm"])),
-            ),
+            noun_from(Settings, MapSettingsForm.model_validate(settings), SETTINGS),
             reference if isinstance(reference, str) else tuple(reference),
             None if depth_mm is None else float(m(depth_mm)),
             attributes.get("seed", 0),

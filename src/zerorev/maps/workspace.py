@@ -16,17 +16,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zerorev.errors import InputError, OutputError, ZerorevError
-from zerorev.files.conversion import robot_data, settings_data, tool_data
+from zerorev.files.conversion import robot_data, tool_data
 from zerorev.files.moved_job import frame_text
 from zerorev.files.output import as_output_error, check_folder, write_whole_folder
+from zerorev.files.stated_forms import data_of, default_of
 from zerorev.files.units import mm, plain
 from zerorev.files.validation import inside
 from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.replan import question_of
 from zerorev.maps.sound import MARK, check_grid, check_store
-from zerorev.model.map_task import MapTask
+from zerorev.model.map_task import SETTINGS, MapTask
 from zerorev.model.quantity import quantity
+from zerorev.model.settings import Settings
+from zerorev.model.stated import stated
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -35,7 +38,6 @@ if TYPE_CHECKING:
 __all__ = ["FORMAT", "MARK", "MapStore", "read_workspace_map"]
 
 FORMAT = "zerorev.map/1"
-SETTINGS = ("min_rate_deg_per_mm", "psi_bound_deg", "legs", "max_twist_deg_per_mm")
 CHECKSUM_BYTES = 4
 FILE_BLOCK = 4096  # bytes by which a disk gives room
 SPARE_ROOM = 1.05
@@ -219,7 +221,6 @@ def _skeleton(task: MapTask) -> Dataset:
     for n, name in enumerate(names):
         attributes = {"units": "1", "long_name": f"{name.upper()} of the direction into the material, {frame}"}
         coordinates[f"direction_{name}"] = (("direction",), task.directions[:, n], attributes)
-    settings = settings_data(question.settings)
     reference = question.psi_reference
     head: dict[str, Any] = {
         "format": FORMAT,
@@ -229,7 +230,7 @@ def _skeleton(task: MapTask) -> Dataset:
         "robot": robot_data(question.robot),
         "tool": tool_data(question.tool),
         "psi_reference": reference if isinstance(reference, str) else list(reference),
-        "settings": {name: settings[name] for name in SETTINGS},
+        "settings": data_of(question.settings, SETTINGS),
     }
     if quantity(question.quantity).needs_depth:
         assert question.depth is not None
@@ -246,7 +247,9 @@ def _skeleton(task: MapTask) -> Dataset:
 def _check_same(found: Dataset, wanted: Dataset, path: str) -> None:
     """Refuse a map of other settings, and name the first that differs."""
     accepted = "the map of the same command, to continue with; or another folder"
-    there, here = _flat(found.attrs), _flat(wanted.attrs)
+    # a map of before a setting existed was made with its default
+    usual = {f"settings.{each.path[0]}": default_of(each) for each in stated(Settings) if each.name in SETTINGS}
+    there, here = usual | _flat(found.attrs), _flat(wanted.attrs)
     for key in sorted({*there, *here}):
         if there.get(key) != here.get(key):
             what = f"is another map: its {key} is {_shown(there.get(key))}, not {_shown(here.get(key))}"

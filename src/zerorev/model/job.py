@@ -14,15 +14,16 @@ from zerorev.model.robot import Robot
 from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 
-__all__ = ["Job", "Settings", "check_masses"]
+__all__ = ["Job", "Settings", "check_robot"]
 
 
-def check_masses(robot: Robot, settings: Settings) -> None:
-    """Hold a criterion that takes the masses of the robot to its having them.
+def check_robot(robot: Robot, settings: Settings) -> None:
+    """Hold settings to what the robot has.
 
     Raises:
-        InputError: a criterion weighs that the robot has no masses for.
+        InputError: a criterion weighs that the robot has no masses for; or a joint has no range left.
     """
+    robot.allowed(settings.limit_margin)
     for name, _ in settings.weights:
         if CRITERIA[name].needs_dynamics and robot.dynamics is None:
             raise InputError(
@@ -70,4 +71,4 @@ class Job:
             if hole.id in seen:
                 raise InputError(f"the id '{hole.id}' is used twice", where="holes", accepted="ids that differ")
             seen.add(hole.id)
-        check_masses(self.robot, self.settings)
+        check_robot(self.robot, self.settings)

@@ -11,12 +11,15 @@ import numpy.typing as npt
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, unit
 from zerorev.model.hole import Hole, psi_zero_vector
-from zerorev.model.job import Settings
+from zerorev.model.job import Settings, check_robot
 from zerorev.model.quantity import in_words, quantity
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
-__all__ = ["MapTask", "Question", "cone", "sphere"]
+__all__ = ["SETTINGS", "MapTask", "Question", "cone", "sphere"]
+
+SETTINGS = ("min_rate", "psi_bound", "legs", "max_twist", "limit_margin")
+"""Names of the settings that a map heeds."""
 
 NOMINAL_DEPTH = 1e-3  # [m] of a hole whose depth is not examined
 GOLDEN_TURN = np.pi * (3 - np.sqrt(5))
@@ -31,7 +34,7 @@ class Question:
         robot: the arm.
         tool: the drill on its flange.
         quantity: which number is wanted (`model.quantity`).
-        settings: whose `min_rate`, `psi_bound`, `legs` and `max_twist` count.
+        settings: of which those named in `SETTINGS` count.
         psi_reference: `base_y`, `nearest_base`, or a vector in the base frame.
         depth: stroke [m] where the quantity needs one, else None.
         seed: of the swarm.
@@ -54,6 +57,7 @@ class Question:
             raise InputError(what, where="depth_mm", accepted=accepted)
         if self.depth is not None and not 0 < self.depth < np.inf:
             raise InputError(f"a depth of {self.depth * 1e3:g} mm", where="depth_mm", accepted="a finite depth above 0")
+        check_robot(self.robot, self.settings)
         if self.settings.legs == "free" and not wanted.free_legs:
             raise InputError("free", where="legs", accepted=f"straight: {self.quantity} knows no other")
 

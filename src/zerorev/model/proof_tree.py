@@ -31,6 +31,7 @@ class Claim:
         weights: what a reversal of each joint costs, shape (6,).
         most_cost: what a motion may cost in reversals at most.
         value: none is below; NO_VALUE: there is no motion.
+        limit_margin: room that is kept to the robot's limits [rad].
     """
 
     depth: float
@@ -40,6 +41,7 @@ class Claim:
     weights: Array
     most_cost: float
     value: float
+    limit_margin: float = 0.0
 
 
 @dataclass(frozen=True)

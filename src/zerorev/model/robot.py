@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -96,6 +96,29 @@ class Robot:
     second_sources: tuple[str, ...] = field(default=(), compare=False)
     caveats: tuple[str, ...] = field(default=(), compare=False)
     dynamics: Dynamics | None = None
+
+    def allowed(self, margin: float) -> JointLimits:
+        """The joint limits with room kept at both ends; without any, the limits themselves.
+
+        Args:
+            margin: the room [rad], 0 or more.
+
+        Raises:
+            InputError: it leaves a joint nothing.
+        """
+        limits = self.limits
+        if margin == 0:
+            return limits
+        width = (limits.upper - limits.lower) / 2
+        if not (margin < width).all():
+            joint = int(np.argmin(width))
+            most = np.rad2deg(width[joint])
+            raise InputError(
+                f"{np.rad2deg(margin):g} deg at both ends leave {self.joint_names[joint]} no way to move",
+                where="limit_margin_deg",
+                accepted=f"less than {most:g}, half of its {2 * most:g} deg",
+            )
+        return replace(limits, lower=limits.lower + margin, upper=limits.upper - margin)
 
     @property
     def reach(self) -> float:

@@ -114,6 +114,16 @@ class Settings:
         tuple[float, ...] | None,
         Six("controller angles to which free turns are chosen nearest", DEG, none="the turns farthest from the limits"),
     ] = None
+    limit_margin: Annotated[
+        float,
+        Number(
+            "room that every joint keeps to its limits, in the lead-in, too",
+            DEG,
+            least=0,
+            note="A part that stands off where it was measured brings joints nearer to their limits than planned",
+            label="room at the joint limits",
+        ),
+    ] = 0.0
     blend: Annotated[
         float,
         Number(

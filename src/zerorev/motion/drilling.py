@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +15,33 @@ from zerorev.kernels.field import rates
 from zerorev.kernels.layout import TwistPlane
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
-from zerorev.model.robot import Robot
+from zerorev.model.resized import resized
+from zerorev.model.robot import JointLimits, Robot
+from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 from zerorev.motion.bodies import bodies_of
 from zerorev.motion.kinematics import inverse, tcp_pose, wrist_in_tcp, wrist_offset
 
 __all__ = ["Drilling", "joint_rates"]
+
+
+class Wanted(Protocol):
+    """A job, a plan or the question of a map: who drills, and how."""
+
+    @property
+    def robot(self) -> Robot:
+        """The arm."""
+        ...
+
+    @property
+    def tool(self) -> Tool:
+        """The drill."""
+        ...
+
+    @property
+    def settings(self) -> Settings:
+        """How it is drilled."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -30,11 +52,23 @@ class Drilling:
         robot: the arm.
         tool: the drill.
         hole: what is drilled.
+        limit_margin: room that every joint keeps to its limits [rad].
     """
 
     robot: Robot
     tool: Tool
     hole: Hole
+    limit_margin: float = 0.0
+
+    @classmethod
+    def of(cls, wanted: Wanted, hole: Hole) -> Drilling:
+        """A hole as a job, a plan or a map has it drilled."""
+        return cls(wanted.robot, wanted.tool, hole, wanted.settings.limit_margin)
+
+    @cached_property
+    def limits(self) -> JointLimits:
+        """What the joints may do: within the limits of the robot, less the room that is kept there."""
+        return self.robot.allowed(self.limit_margin)
 
     @cached_property
     def plane(self) -> TwistPlane:
@@ -73,6 +107,11 @@ class Drilling:
     def without_motion(self) -> Drilling:
         """The same hole without the motion that is given with it."""
         return self if self.hole.profile is None else self._in_plane(replace(self.hole, profile=None))
+
+    def resized(self, settings: Settings, factor: float) -> tuple[Drilling, Settings]:
+        """The same drilling at another size, with its settings (`model.resized`); a power of two changes no digit."""
+        robot, tool, hole, settings = resized(self.robot, self.tool, self.hole, settings, factor)
+        return Drilling(robot, tool, hole, self.limit_margin), settings
 
     def nearer(self, distance: float) -> Drilling:
         """The hole that ends so far [m] before this one's target, on the same line; its motion is left out."""

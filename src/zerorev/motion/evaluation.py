@@ -73,7 +73,7 @@ def evaluate(
         branch: 0..7.
         settings: whose `near_joints` chooses the turns.
     """
-    return evaluated(Drilling(robot, tool, hole), profile, branch, settings)
+    return evaluated(Drilling(robot, tool, hole, settings.limit_margin if settings else 0.0), profile, branch, settings)
 
 
 def evaluated(drilling: Drilling, profile: Profile, branch: int, settings: Settings | None = None) -> Evaluation:
@@ -87,14 +87,14 @@ def evaluated(drilling: Drilling, profile: Profile, branch: int, settings: Setti
         robot.arm, plane, branch, profile.standoff, profile.psi, profile.corner, SAMPLES, turns, JUMP,
         joints, low, high, moved,
     )  # fmt: skip
-    full_turns, over = choose_turns(low, high, robot.limits, near) if runs else (np.zeros(6), ())
+    full_turns, over = choose_turns(low, high, drilling.limits, near) if runs else (np.zeros(6), ())
     if over or not runs:
         path = joint_path(drilling, profile, branch, near=near)
         if path.runs:
             segments = turns[:, 0].astype(int)
             through = profile.distance[segments] + turns[:, 1] * np.abs(np.diff(profile.standoff))[segments]
             path = joint_path(drilling, profile, branch, near=near, through=through.tolist())
-        return Evaluation(None, None, _faults(robot, drilling.hole, branch, path))
+        return Evaluation(None, None, _faults(drilling, branch, path))
     legs = profile.standoff[[0, -1]] - profile.standoff[profile.corner]
     limits = robot.limits
     score = Score(
@@ -120,7 +120,7 @@ def meets_threshold(score: Score, settings: Settings) -> bool:
     return bool((steady_rates(score, settings) >= settings.min_rate * (1 - 1e-6)).all())
 
 
-def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Finding, ...]:
+def _faults(drilling: Drilling, branch: int, path: JointPath) -> tuple[Finding, ...]:
     found: list[tuple[FindingKind, str]] = []
     if path.fault is not None:
         found.append(("unreachable", f"branch {branch} cannot reach {path.fault * 1e3:.2f} mm of stand-off"))
@@ -128,12 +128,13 @@ def _faults(robot: Robot, hole: Hole, branch: int, path: JointPath) -> tuple[Fin
         found.append(("jump", f"branch {branch} jumps at {path.jump * 1e3:.2f} mm of stand-off"))
     for i in (joint - 1 for joint in path.over_limit):
         low, high = np.rad2deg([path.joints[:, i].min(), path.joints[:, i].max()])
-        allowed = np.rad2deg([robot.limits.lower[i], robot.limits.upper[i]])
-        name = robot.joint_names[i]
-        found.append(
-            ("limit", f"{name} runs from {low:.2f} to {high:.2f} deg, allowed are {allowed[0]:g} to {allowed[1]:g} deg")
-        )
-    return tuple(Finding("error", kind, message, hole.id) for kind, message in found)
+        allowed = np.rad2deg([drilling.limits.lower[i], drilling.limits.upper[i]])
+        name = drilling.robot.joint_names[i]
+        message = f"{name} runs from {low:.2f} to {high:.2f} deg, allowed are {allowed[0]:g} to {allowed[1]:g} deg"
+        if drilling.limit_margin:
+            message += f", {np.rad2deg(drilling.limit_margin):g} deg within its limits"
+        found.append(("limit", message))
+    return tuple(Finding("error", kind, message, drilling.hole.id) for kind, message in found)
 
 
 def event_distance(profile: Profile, event: Event) -> float:

@@ -160,7 +160,7 @@ def joint_path(
         return JointPath(distance, standoff, psi, joints, float(standoff[lost[0]]), None, ())
     steps = np.abs(np.diff(joints, axis=0)).max(axis=1)
     jumps = np.flatnonzero(steps > JUMP)
-    turns, over = choose_turns(joints.min(axis=0), joints.max(axis=0), drilling.robot.limits, near)
+    turns, over = choose_turns(joints.min(axis=0), joints.max(axis=0), drilling.limits, near)
     jump = float(standoff[jumps[0]]) if jumps.size else None
     return JointPath(distance, standoff, psi, joints + turns, None, jump, over)
 

@@ -82,9 +82,7 @@ class Asked:
         except InputError:  # the reference of the spin has no meaning there, so no job could stand there
             return np.array([-hole.depth for hole in self.job.holes])
         for k in look.order:
-            deepest = deepest_as_drilled(
-                Drilling(moved.robot, moved.tool, moved.holes[k]), moved.settings.without_proof
-            )
+            deepest = deepest_as_drilled(Drilling.of(moved, moved.holes[k]), moved.settings.without_proof)
             margins[k] = deepest.depth - moved.holes[k].depth
             if margins[k] <= look.enough:
                 break

@@ -130,7 +130,8 @@ class _Depth:
 
     def __call__(self, asked: tuple[int, Hole]) -> float:
         robot, tool, settings = self.robots[asked[0]]
-        return deepest_as_drilled(Drilling(robot, tool, asked[1]), settings.without_proof).depth
+        drilling = Drilling(robot, tool, asked[1], settings.limit_margin)
+        return deepest_as_drilled(drilling, settings.without_proof).depth
 
 
 def _check_same(jobs: Sequence[Job]) -> None:

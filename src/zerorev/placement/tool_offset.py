@@ -134,7 +134,9 @@ def offset_curve(
         if progress:
             progress(done, deepest.size)
         moved = with_offset(robot, tool, float(e[i]), float(a[j]))
-        deepest[i, j, k] = deepest_as_drilled(Drilling(robot, moved, holes[k]), settings.without_proof).depth
+        deepest[i, j, k] = deepest_as_drilled(
+            Drilling(robot, moved, holes[k], settings.limit_margin), settings.without_proof
+        ).depth
     if progress:
         progress(deepest.size, deepest.size)
     return OffsetCurve(e, a, deepest, np.array([hole.depth for hole in holes]))

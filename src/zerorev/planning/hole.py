@@ -12,7 +12,7 @@ from zerorev.kernels._ahead import expect
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
-from zerorev.model.job import Settings, check_masses
+from zerorev.model.job import Settings, check_robot
 from zerorev.model.plan import Baseline, HolePlan, Motion, Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
@@ -23,6 +23,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
+from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
 from zerorev.program.ways import Way
@@ -60,9 +61,10 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         the motion with its score, the baseline with constant spin, the outcome of the check, and findings. A hole that
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
-    settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    settings = settings or Settings()
+    drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"plan with {settings.legs} legs")
-    check_masses(robot, settings)
+    check_robot(robot, settings)
     if too_short(drilling):
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(_why_too_short(robot, hole),))
     if hole.profile is None:
@@ -91,9 +93,10 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
         status is `infeasible` and the hole is as it was.
     """
-    settings, drilling = settings or Settings(), Drilling(robot, tool, hole)
+    settings = settings or Settings()
+    drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"deepest stroke with {settings.legs} legs")
-    check_masses(robot, settings)
+    check_robot(robot, settings)
     deepest = deepest_as_drilled(drilling, settings)
     drilling = drilling.without_motion()
     hole = drilling.hole
@@ -269,6 +272,7 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
                 message += ", which no motion of straight legs with so few reversals keeps (proven)"
             message += "; no motion with so few reversals was found that keeps more"
         found.append(Finding("warning", "threshold", message, hole.id))
+    found += limit_findings(drilling, settings, answer)
     found += load_findings(drilling, settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
@@ -335,9 +339,14 @@ def lever_findings(robot: Robot, tool: Tool) -> tuple[Finding, ...]:
 def _why_infeasible(drilling: Drilling, settings: Settings) -> tuple[Finding, ...]:
     """Which of reach, limits or the bound on the spin leaves no motion at all."""
     limits = replace(drilling.robot.limits, lower=np.full(6, -4 * np.pi), upper=np.full(6, 4 * np.pi))
-    if can_run(replace(drilling, robot=replace(drilling.robot, limits=limits)), settings):
+    free = replace(drilling, robot=replace(drilling.robot, limits=limits), limit_margin=0.0)
+    if can_run(free, settings):
         spins = "" if settings.psi_bound is None else f" within +-{np.rad2deg(settings.psi_bound):g} deg of spin"
         message = f"no branch drills it within the joint limits{spins}"
+        if settings.limit_margin:
+            message += f" and {np.rad2deg(settings.limit_margin):g} deg away from them (limit_margin_deg)"
+            if can_run(replace(drilling, limit_margin=0.0), settings):
+                message += "; nearer to them there is a motion"
         if settings.keep_lead_in and can_run(drilling, settings):
             message = (
                 f"no motion was found whose whole lead-in of {settings.lead_in * 1e3:g} mm runs without a reversal"

@@ -80,12 +80,12 @@ def logged_trees(plan: Plan, stated: HolePlan) -> list[ProofTree]:
     """
     trees: list[ProofTree] = []
     nothing = stated.optimality is None and stated.deepest_at_most is None
-    if nothing or plan.settings.legs == "free" or too_short(Drilling(plan.robot, plan.tool, stated.hole)):
+    if nothing or plan.settings.legs == "free" or too_short(Drilling.of(plan, stated.hole)):
         return trees
     hole = stated.hole
     if stated.optimality is None:
         given = hole if stated.motion is None or hole.profile else replace(hole, profile=stated.motion.profile)
-        deepest_as_drilled(Drilling(plan.robot, plan.tool, given), plan.settings, trees)
+        deepest_as_drilled(Drilling.of(plan, given), plan.settings, trees)
     else:
-        optimum(Drilling(plan.robot, plan.tool, hole), plan.settings, trees)
+        optimum(Drilling.of(plan, hole), plan.settings, trees)
     return trees

@@ -193,10 +193,10 @@ def check_hole(
         measures=answer.measures,
         lost_motion=answer.lost_motion,
         verified=stated.verified,
-        cycle_time=cycle_time(Drilling(robot, tool, stated.hole), settings, stated.motion),
+        cycle_time=cycle_time(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated.motion),
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
     )
-    drilling = Drilling(robot, tool, stated.hole)
+    drilling = Drilling(robot, tool, stated.hole, settings.limit_margin)
     searched = Counter(again.findings) - Counter(motion_findings(drilling, settings, again) if again.motion else ())
     said = [*motion_findings(drilling, settings, replace(found, verified=verified)), *searched.elements()]
     digits = cache(partial(_slack, robot, tool, settings, stated, own))
@@ -318,7 +318,7 @@ def _improved(
     One that may have been chosen for the sequence has to be as good but for what it costs; of that the sequence may
     take a share, of the travel that of all holes together.
     """
-    order = Order(Drilling(robot, tool, found.hole), settings)
+    order = Order(Drilling(robot, tool, found.hole, settings.limit_margin), settings)
     ours, theirs = _candidate(order, found), _candidate(order, again)
     if ours is None or theirs is None:
         return

@@ -205,7 +205,7 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     motion, score = answer.motion, answer.score
     if motion is None or score is None:
         return ()
-    drilling = Drilling(robot, tool, answer.hole)
+    drilling = Drilling(robot, tool, answer.hole, settings.limit_margin)
     planned = _member(drilling, settings, motion, score.travel)
     passed = answer.verified is not None and answer.verified.passed
     if not choose or not passed or answer.status != "planned":
@@ -245,7 +245,7 @@ def _turned(drilling: Drilling, settings: Settings, one: Candidate, planned: Mem
         yield member
     if settings.near_joints is not None:
         return
-    limits, points = drilling.robot.limits, np.vstack([member.start, motion.joints, member.end])
+    limits, points = drilling.limits, np.vstack([member.start, motion.joints, member.end])
     first = np.ceil((limits.lower - points.min(axis=0)) / FULL_TURN - ROUNDING).astype(int)
     last = np.floor((limits.upper - points.max(axis=0)) / FULL_TURN + ROUNDING).astype(int)
     ways = product(*(range(min(a, 0), max(b, 0) + 1) for a, b in zip(first.tolist(), last.tolist(), strict=True)))
@@ -256,7 +256,7 @@ def _turned(drilling: Drilling, settings: Settings, one: Candidate, planned: Mem
 def _answered(robot: Robot, tool: Tool, settings: Settings, task: tuple[HolePlan, Member]) -> HolePlan | None:
     """The answer of a hole that takes another member; None where that does not pass the check."""
     answer, member = task
-    drilling = Drilling(robot, tool, answer.hole)
+    drilling = Drilling(robot, tool, answer.hole, settings.limit_margin)
     found = _with_turns(drilling, settings, member.profile, member.branch, member.joints)
     if found is None:
         return None

@@ -69,8 +69,9 @@ class Line:
 
     def trouble(self, standoff: Array, joints: Array) -> _Trouble | None:
         """The first of the samples, shape (N,), that breaks a rule."""
-        robot = self.drilling.robot
-        rates, limits, names = self.rates(standoff), robot.limits, robot.joint_names
+        rates, limits, names = self.rates(standoff), self.drilling.limits, self.drilling.robot.joint_names
+        margin = np.rad2deg(self.drilling.limit_margin)
+        at_limit = f"{{}} comes within {margin:g} deg of its limit" if margin else "{} reaches its limit"
         steps = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
         # by the mean value theorem a joint cannot step further than its greatest rate allows, unless it jumps
         fastest = np.maximum(np.abs(rates), np.abs(np.roll(rates, 1, axis=0)))
@@ -81,7 +82,7 @@ class Line:
             (np.isnan(rates), "{} comes to a singularity"),
             (steps > may_step, "{} jumps"),
             (self.signs(rates) != kept, "{} would turn the other way"),
-            ((joints < limits.lower) | (joints > limits.upper), "{} reaches its limit"),
+            ((joints < limits.lower) | (joints > limits.upper), at_limit),
         )
         firsts = [
             (int(np.argmax(broken.any(axis=1))), order, text.format(" ".join(_names(names, broken))))

@@ -7,6 +7,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import outward_rates
 from zerorev.motion.kinematics import forward, tcp_pose
@@ -64,12 +65,20 @@ def _joints(plan: Plan, hole_plan: HolePlan, program: Program, hole: HoleProgram
     if not (off <= ON_POSE[0] and turned <= ON_POSE[1]):
         message = f"the plan's joints miss its poses by {off * 1e3:.3g} mm and {np.rad2deg(turned):.3g} deg"
         found.append(Finding("error", "joints", message, hole.id))
-    limits = plan.robot.limits
-    everywhere = np.vstack([joints, hole.way, program.end])
-    beyond = (everywhere < limits.lower - ROUND_OFF) | (everywhere > limits.upper + ROUND_OFF)
-    if names := [name for i, name in enumerate(plan.robot.joint_names) if beyond[:, i].any()]:
-        found.append(Finding("error", "limit", f"{' '.join(names)} beyond the joint limits", hole.id))
+    margin = plan.settings.limit_margin
+    # the home position, on the way, is the user's own
+    beyond = _beyond(plan.robot, np.vstack([hole.way, program.end]), 0.0) | _beyond(plan.robot, joints, margin)
+    if names := [name for name, bad in zip(plan.robot.joint_names, beyond, strict=True) if bad]:
+        nearer = ", or nearer to them than limit_margin_deg" if margin else ""
+        found.append(Finding("error", "limit", f"{' '.join(names)} beyond the joint limits{nearer}", hole.id))
     return tuple(found)
+
+
+def _beyond(robot: Robot, joints: Array, margin: float) -> Array:
+    """Which joints leave the limits less a margin [rad] at any of some postures [rad], shape (n, 6); shape (6,)."""
+    limits = robot.allowed(margin)
+    out = (joints < limits.lower - ROUND_OFF) | (joints > limits.upper + ROUND_OFF)
+    return np.asarray(out.any(axis=0))
 
 
 def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding, ...]:
@@ -105,7 +114,7 @@ def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: L
     s = np.linspace(standoff, move.standoff, SAMPLES)
     spin = np.linspace(psi, move.psi, SAMPLES)
     slope = (move.psi - psi) / (move.standoff - standoff)
-    return outward_rates(Drilling(plan.robot, plan.tool, hole_plan.hole), hole_plan.motion.branch, s, spin, slope)
+    return outward_rates(Drilling.of(plan, hole_plan.hole), hole_plan.motion.branch, s, spin, slope)
 
 
 def _floored(feed_mm_s: float) -> str:

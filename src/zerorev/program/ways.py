@@ -131,7 +131,7 @@ def stop_of(robot: Robot, tool: Tool, settings: Settings, hole: Hole, motion: Mo
         hole: which.
         motion: of the hole.
     """
-    way = Way.of(Drilling(robot, tool, hole), motion, settings)
+    way = Way.of(Drilling(robot, tool, hole, settings.limit_margin), motion, settings)
     return Stop(hole, motion.branch, way)
 
 

@@ -103,7 +103,8 @@ def _moved(
         return None
     psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
     legs = Legs(np.array([[0.0, depth]] * 2), psi)
-    rules = constraints(robot, settings, min_rate, steepest=settings.max_twist if settings.legs == "free" else np.inf)
+    steepest = settings.max_twist if settings.legs == "free" else np.inf
+    rules = constraints(order.drilling, settings, min_rate, steepest=steepest)
     moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, samples=POINTS)
     if lack > ENOUGH_LACK:
         return None

@@ -19,7 +19,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.model.resized import resized, resized_profile
+from zerorev.model.resized import resized_profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
@@ -80,7 +80,8 @@ def deepest_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings | No
         settings: whose `min_rate` every joint keeps at every point, whose `psi_bound` holds the spin, and whose `legs`
             are straight, or free with twist rates up to `max_twist`.
     """
-    return deepest_of(Drilling(robot, tool, hole), settings or Settings())
+    settings = settings or Settings()
+    return deepest_of(Drilling(robot, tool, hole, settings.limit_margin), settings)
 
 
 def deepest_of(drilling: Drilling, settings: Settings) -> Deepest:
@@ -88,8 +89,7 @@ def deepest_of(drilling: Drilling, settings: Settings) -> Deepest:
     size = drilling.robot.size
     if size != 1:
         # the tolerances of the search are made for one size of arm
-        robot, tool, hole, settings = resized(drilling.robot, drilling.tool, drilling.hole, settings, 1 / size)
-        return deepest_of(Drilling(robot, tool, hole), settings).resized(size)
+        return deepest_of(*drilling.resized(settings, 1 / size)).resized(size)
     straight = _Search(drilling, settings).run()
     if settings.legs == "straight":
         return straight
@@ -158,7 +158,7 @@ class _Search:
         self.min_rate = max(settings.min_rate, LEAST_RATE)
         self.psi_bound = settings.psi_bound
         self.psi = target_spins(settings.psi_bound, GRID)
-        self.rules = constraints(robot, settings, settings.min_rate, steepest=steepest)
+        self.rules = constraints(drilling, settings, settings.min_rate, steepest=steepest)
         self.valleys: set[tuple[int, float, float]] = set()  # gone down: posture, depth, spin at the target
         self.unlimited = self.rules.unlimited()
 

@@ -80,7 +80,7 @@ class _FreeLegs:
         self.coarse = _grain(self.reach, 1, 1e-3)
         self.fine = _grain(self.reach, 3, 1e-6)
         self.constraints = constraints(
-            robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
+            drilling, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
         )
         self.longest = 2 * self.reach
         self.periodic = settings.psi_bound is None

@@ -126,7 +126,7 @@ class _Search:
         self.drilling, self.settings, self.effort = drilling, settings, effort
         robot = drilling.robot
         self.constraints = constraints(
-            robot, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
+            drilling, settings, settings.min_rate, slack=ROWS_SLACK, steepest=settings.max_twist
         )
         branches = np.array([drilling.hole.branch in (None, branch) for branch in range(8)])
         self.viable = Viable(robot.arm, drilling.plane, self.constraints, branches, robot.reach, effort.rows)
@@ -224,7 +224,7 @@ class _Search:
                 self.drilling.robot.arm, self.viable.plane, legs.standoff[k], legs.psi[k], pair.branch, joints[k]
             )
         joints = np.unwrap(np.concatenate([joints[0, ::-1], joints[1, 1:]]), axis=0)
-        limits = self.drilling.robot.limits
+        limits = self.drilling.limits
         middle = 0.5 * (joints.min(axis=0) + joints.max(axis=0))
         turns = 2 * np.pi * np.rint((0.5 * (limits.lower + limits.upper) - middle) / (2 * np.pi))
         at_target = self.viable.room[-1]

@@ -263,7 +263,7 @@ class LegPairs:
 
     def limits(self, slack: float) -> JointLimits:
         """The limits with a little kept to them [rad]."""
-        limits = self.drilling.robot.limits
+        limits = self.drilling.limits
         return JointLimits(limits.lower + slack, limits.upper - slack, limits.speed)
 
 

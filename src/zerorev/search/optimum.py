@@ -18,7 +18,6 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Optimality
 from zerorev.model.profile import Profile
 from zerorev.model.proof_tree import ProofTree
-from zerorev.model.resized import resized
 from zerorev.motion.drilling import Drilling
 from zerorev.program.lead_in import find_lead_in
 from zerorev.search.bounds.free_depth import bound_free_depth
@@ -172,8 +171,7 @@ class _Pool:
         self.size = 1.0 if settings.weights else drilling.robot.size
         self.real = Order(drilling.without_motion(), settings)
         if self.size != 1:
-            robot, tool, hole, settings = resized(drilling.robot, drilling.tool, drilling.hole, settings, 1 / self.size)
-            drilling = Drilling(robot, tool, hole)
+            drilling, settings = drilling.resized(settings, 1 / self.size)
         self.settings, self.profile = settings, drilling.hole.profile
         if settings.corner:
             self.drilling = drilling.nearer(settings.corner)

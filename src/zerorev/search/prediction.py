@@ -16,9 +16,8 @@ from numpy.polynomial.polynomial import polyval
 
 from zerorev.kernels.layout import LONGEST_TWIST
 from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.robot import NIL_RATE, JointLimits, Robot
+from zerorev.model.robot import NIL_RATE, JointLimits
 from zerorev.motion.critical import CriticalRates, bracket, critical
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.search.line import golden
@@ -105,7 +104,7 @@ def narrowest(drilling: Drilling, settings: Settings) -> CriticalRates:
     spins = target_spins(settings.psi_bound, FINE_SPINS)
     below, above = bracket(*joint_rates(drilling, 0.0, spins), settings.min_rate)
     with np.errstate(invalid="ignore"):  # out of reach, where both are infinite
-        width = np.where(_within(drilling.robot, drilling.hole, _angles(drilling, spins)), above - below, np.inf)
+        width = np.where(_within(drilling, _angles(drilling, spins)), above - below, np.inf)
     n, branch = np.unravel_index(np.nanargmin(width), width.shape)
     low, high = spins[max(int(n) - 1, 0)], spins[min(int(n) + 1, len(spins) - 1)]
 
@@ -208,7 +207,7 @@ class _TargetLine(NamedTuple):
 
 
 def _target_line(drilling: Drilling, settings: Settings) -> _TargetLine:
-    limits, min_rate = drilling.robot.limits, max(settings.min_rate, LEAST_RATE)
+    limits, min_rate = drilling.limits, max(settings.min_rate, LEAST_RATE)
     spins = target_spins(settings.psi_bound, SPINS)
     angles = _angles(drilling, spins)
     # five points: the place itself, a step out and in, a step round and back
@@ -216,11 +215,7 @@ def _target_line(drilling: Drilling, settings: Settings) -> _TargetLine:
     theta_s, theta_psi = joint_rates(drilling, steps[:, :1], spins + steps[:, 1:])
     with np.errstate(invalid="ignore"):
         below, above = bracket(theta_s[0], theta_psi[0], min_rate)
-        use = (
-            _within(drilling.robot, drilling.hole, angles)
-            & np.isfinite(above - below)
-            & np.isfinite(theta_s).all(axis=(0, 3))
-        )
+        use = _within(drilling, angles) & np.isfinite(above - below) & np.isfinite(theta_s).all(axis=(0, 3))
     theta_s, theta_psi = theta_s[:, use], theta_psi[:, use]
     along, round_ = (slice(0, 3), STEP_ALONG), ([0, 3, 4], STEP_ROUND)
     (s_s, s_ss), (s_psi, s_psipsi) = (_derivatives(theta_s[points], step) for points, step in (along, round_))
@@ -238,14 +233,15 @@ def _target_line(drilling: Drilling, settings: Settings) -> _TargetLine:
 def _angles(drilling: Drilling, spins: Array) -> Array:
     """Joints at the target [rad], turned to where they are farthest from the limits, shape (N, 8, 6)."""
     angles = drilling.angles(0.0, spins)
-    middle = (drilling.robot.limits.lower + drilling.robot.limits.upper) / 2
+    middle = (drilling.limits.lower + drilling.limits.upper) / 2
     return angles + FULL_TURN * np.round((middle - angles) / FULL_TURN)
 
 
-def _within(robot: Robot, hole: Hole, angles: Array) -> npt.NDArray[np.bool_]:
+def _within(drilling: Drilling, angles: Array) -> npt.NDArray[np.bool_]:
     """Which places are in reach, within the limits and on a branch that is asked for, shape (N, 8)."""
-    inside = ((angles > robot.limits.lower) & (angles < robot.limits.upper)).all(axis=-1)
-    return np.asarray(inside & (True if hole.branch is None else np.arange(8) == hole.branch))
+    limits, branch = drilling.limits, drilling.hole.branch
+    inside = ((angles > limits.lower) & (angles < limits.upper)).all(axis=-1)
+    return np.asarray(inside & (True if branch is None else np.arange(8) == branch))
 
 
 def _derivatives(points: Array, step: float) -> tuple[Array, Array]:

@@ -71,7 +71,7 @@ class Problem:
     def constraints(self, min_rate: float, *, mean_rule: bool = False, turn_inside: bool = False) -> Constraints:
         """What the legs are held to."""
         return constraints(
-            self.drilling.robot,
+            self.drilling,
             self.settings,
             min_rate,
             steepest=steepest_twist(self.settings, self.drilling.hole.depth),

@@ -10,7 +10,7 @@ from zerorev.kernels.layout import LONGEST_TWIST, Constraints
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
+from zerorev.motion.drilling import Drilling
 
 __all__ = ["GRID", "LEAST_RATE", "LIMIT_SLACK", "constraints", "steepest_twist", "straight_motion", "target_spins"]
 
@@ -20,18 +20,18 @@ LEAST_RATE = float(np.deg2rad(1e-5))  # [rad/m] 1e-8 deg/mm: a joint that must n
 
 
 def constraints(
-    robot: Robot, settings: Settings, min_rate: float, *, slack: float = LIMIT_SLACK, **more: Any
+    drilling: Drilling, settings: Settings, min_rate: float, *, slack: float = LIMIT_SLACK, **more: Any
 ) -> Constraints:
     """What legs have to keep.
 
     Args:
-        robot: whose joint limits they keep.
+        drilling: whose joint limits they keep.
         settings: for the bound on the spin.
         min_rate: of every joint [rad/m]; the least rate, at least.
         slack: kept to the limits besides [rad].
         more: as `Constraints` has it.
     """
-    limits = robot.limits
+    limits = drilling.limits
     return Constraints(
         lower=limits.lower + slack,
         upper=limits.upper - slack,

@@ -143,9 +143,7 @@ class Comparison:
 
     def problem(self, hole: Hole) -> Problem:
         """What the methods are given."""
-        return Problem(
-            Drilling(self.job.robot, self.job.tool, hole), self.bound, samples=self.samples, crowded=self.crowded
-        )
+        return Problem(Drilling.of(self.job, hole), self.bound, samples=self.samples, crowded=self.crowded)
 
     @property
     def bound(self) -> float:
@@ -259,7 +257,7 @@ def _rescored(problem: Problem, method: str, seed: int | None, outcome: Outcome 
     if outcome is None:
         return Rescored(hole.id, method, seed, None, WORST, None, None, seconds)
     profile = Profile.straight(hole.depth, *outcome.spins.tolist())
-    evaluation = evaluated(Drilling(problem.drilling.robot, problem.drilling.tool, hole), profile, outcome.branch)
+    evaluation = evaluated(replace(problem.drilling, hole=hole), profile, outcome.branch)
     score, worth = evaluation.score, thesis_objective(evaluation)
     if score is None:
         return Rescored(hole.id, method, seed, outcome, max(WORST, worth), None, None, seconds)

@@ -14,7 +14,7 @@ __all__ = ["QUANTITIES"]
 
 def _quantity(way: Way, how: str) -> Quantity:
     def solve(question: Question, hole: Hole, seed: int) -> Found | None:
-        found = thesis_stroke(Drilling(question.robot, question.tool, hole), question.settings, way, seed)
+        found = thesis_stroke(Drilling.of(question, hole), question.settings, way, seed)
         return stroke_found(found.depth, found.profile, found.branch)
 
     return Quantity(

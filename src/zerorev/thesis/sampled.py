@@ -229,7 +229,7 @@ class SampledObjective:
         if spins.ndim != 2 or spins.shape[1] != 3:
             raise InputError(f"spins of shape {spins.shape}", accepted="(M, 3): start, target, end")
         costs, reversals = np.empty((len(spins), 8)), np.empty((len(spins), 8), dtype=np.int64)
-        weights, limits = self.weighing, self.drilling.robot.limits
+        weights, limits = self.weighing, self.drilling.limits
 
         def judge_some(part: slice) -> None:
             judge(

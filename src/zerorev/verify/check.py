@@ -105,7 +105,7 @@ def verify_hole(
             *reach(piece),
             *on_the_axis(piece, position, rotation),
             *continuity(robot, piece),
-            *limits(robot, piece),
+            *limits(robot, piece, settings.limit_margin),
         )
         failures += [where + failure for failure in checks]
         figures.append([_most(position), _most(rotation), greatest_step(piece), _least_room(robot, piece)])

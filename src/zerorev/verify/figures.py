@@ -72,7 +72,7 @@ def figures(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan) -> F
         stated,
         score=score,
         wrist_offset=_wrist_offset(robot, tool),
-        baseline=_baseline(robot, tool, hole, motion),
+        baseline=_baseline(robot, tool, hole, motion, settings.limit_margin),
         critical_rates=_critical(robot, tool, hole, motion),
         measures=_measures(course, settings, score, lost),
         lost_motion=lost,
@@ -93,7 +93,7 @@ def nearer_turn(robot: Robot, settings: Settings, motion: Motion, joints: Array)
         joints: along it [rad], shape (N, 6).
     """
     low, high = joints.min(axis=0), joints.max(axis=0)
-    lower, upper = robot.limits.lower, robot.limits.upper
+    lower, upper = robot.limits.lower + settings.limit_margin, robot.limits.upper - settings.limit_margin
     aim = (lower + upper) / 2 if settings.near_joints is None else np.array(settings.near_joints)
     away = np.abs((low + high) / 2 - aim)
     for turn in (-TURN, TURN):
@@ -136,7 +136,7 @@ def _in_order(events: tuple[Event, ...], places: Array, together: float) -> tupl
     return tuple(events[i] for i in sorted(range(len(events)), key=lambda i: (group[i], events[i].joint)))
 
 
-def _baseline(robot: Robot, tool: Tool, hole: Hole, motion: Motion) -> Baseline | None:
+def _baseline(robot: Robot, tool: Tool, hole: Hole, motion: Motion, margin: float) -> Baseline | None:
     """The same hole at constant spin, from the same start; None where it cannot be run."""
     profile = motion.profile
     course = Course(robot, tool, hole, profile.at_constant_spin(), motion.joints[0])
@@ -146,8 +146,8 @@ def _baseline(robot: Robot, tool: Tool, hole: Hole, motion: Motion) -> Baseline 
     turned = turning(course)
     score = _score(course, turned)
     low, high = joints.min(axis=0), joints.max(axis=0)
-    least = np.ceil((robot.limits.lower - low - LIMIT_TOLERANCE) / TURN)
-    most = np.floor((robot.limits.upper - high + LIMIT_TOLERANCE) / TURN)
+    least = np.ceil((robot.limits.lower + margin - low - LIMIT_TOLERANCE) / TURN)
+    most = np.floor((robot.limits.upper - margin - high + LIMIT_TOLERANCE) / TURN)
     return Baseline(score.reversals_per_joint, score.travel) if (least <= most).all() else None
 
 

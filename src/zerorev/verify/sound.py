@@ -19,6 +19,7 @@ __all__ = [
     "nearest_to_limit",
     "on_the_axis",
     "reach",
+    "too_near",
 ]
 
 POSITION_TOLERANCE = 1e-8  # [m]
@@ -98,20 +99,27 @@ def nearest_to_limit(robot: Robot, track: Track, joint: int) -> int:
     return _greatest(-np.minimum(angles - limits.lower[joint], limits.upper[joint] - angles))
 
 
-def limits(robot: Robot, track: Track) -> Iterator[str]:
-    """Every sample must be within the joint limits."""
+def limits(robot: Robot, track: Track, margin: float) -> Iterator[str]:
+    """Every sample must be within the joint limits, and keep the room there that was asked for [rad]."""
     room = least_room(robot, track)
     for joint, name in enumerate(robot.joint_names):
-        if room[joint] >= -LIMIT_TOLERANCE:
+        if room[joint] >= margin - LIMIT_TOLERANCE:
             continue
         worst = nearest_to_limit(robot, track, joint)
-        beyond = -limit_distances(robot, track.joints[worst])[joint]
-        if beyond > LIMIT_TOLERANCE:
+        nearest = limit_distances(robot, track.joints[worst])[joint]
+        if nearest < margin - LIMIT_TOLERANCE:
             yield (
-                f"{name} at {np.rad2deg(track.joints[worst, joint]):.4f} deg is {np.rad2deg(beyond):.3g} "
-                f"deg beyond its limits ({np.rad2deg(robot.limits.lower[joint]):g} to "
+                f"{name} at {np.rad2deg(track.joints[worst, joint]):.4f} deg is {too_near(nearest, margin)} its limits "
+                f"({np.rad2deg(robot.limits.lower[joint]):g} to "
                 f"{np.rad2deg(robot.limits.upper[joint]):g} deg) {track.path.place(worst)}"
             )
+
+
+def too_near(distance: float, margin: float) -> str:
+    """How far beyond a joint's limits it is, or how near to them for the room that was asked for [rad]."""
+    if distance < 0:
+        return f"{np.rad2deg(-distance):.3g} deg beyond"
+    return f"{np.rad2deg(distance):.3g} deg, and not {np.rad2deg(margin):g} deg, from"
 
 
 def _greatest(values: Array) -> int:

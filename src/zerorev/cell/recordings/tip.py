@@ -75,7 +75,7 @@ def planned_hole(plan: Plan, hole: str | None) -> PlannedHole:
 
 def _planned(plan: Plan, hole: HolePlan) -> PlannedHole:
     assert hole.motion is not None
-    drilling = Drilling(plan.robot, plan.tool, hole.hole)
+    drilling = Drilling.of(plan, hole.hole)
     return PlannedHole(drilling, hole.motion, plan.settings.lead_in, plan.settings.blend)
 
 

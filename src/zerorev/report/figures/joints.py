@@ -60,7 +60,7 @@ def joint_angles(plan: Plan, hole: HolePlan | str | None = None) -> Figure:
     planned = Curve(*_angles(plan, hole, motion, motion.profile), events)
     loads = hole.lost_motion.events if hole.lost_motion else ()
     constant = Profile(motion.profile.standoff, np.full_like(motion.profile.psi, motion.profile.psi[0]))
-    found = evaluated(Drilling(plan.robot, plan.tool, hole.hole), constant, motion.branch, plan.settings)
+    found = evaluated(Drilling.of(plan, hole.hole), constant, motion.branch, plan.settings)
     baseline = Curve(*_angles(plan, hole, motion, constant), found.score.events if found.score else None)
     for i, axes in enumerate(grid.flat):
         _one_joint(axes, plan, motion.profile, i, planned, baseline)
@@ -92,7 +92,7 @@ def _angles(plan: Plan, hole: HolePlan, motion: Motion, profile: Profile) -> tup
     """Path distance [mm] and controller angles [deg] with the turns of the motion, from whose start they begin."""
     distance = sample_distances(profile, SAMPLES)
     standoff, psi = profile.at(distance)
-    joints = joints_along(Drilling(plan.robot, plan.tool, hole.hole), motion.branch, standoff, psi)
+    joints = joints_along(Drilling.of(plan, hole.hole), motion.branch, standoff, psi)
     turns = np.round((motion.joints[0] - joints[0]) / (2 * np.pi)) * 2 * np.pi
     return distance * 1e3, np.rad2deg(joints + turns)
 

@@ -40,7 +40,7 @@ def draw_loads(axes: Axes, plan: Plan, hole: HolePlan, standoff: Array, psi: Arr
         what the legend says of them; nothing where there are none.
     """
     motion = style.motion_of(hole)
-    drilling = Drilling(plan.robot, plan.tool, hole.hole)
+    drilling = Drilling.of(plan, hole.hole)
     lines = load_lines(drilling, motion.branch, standoff, psi, plan.settings.thrust)
     if not lines:
         return []

@@ -59,7 +59,7 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     corner = profile.standoff[profile.corner]
     low, high = _spin_range(profile.psi)
     patch = field(
-        Drilling(plan.robot, plan.tool, hole.hole), motion.branch,
+        Drilling.of(plan, hole.hole), motion.branch,
         np.linspace(corner, profile.standoff.max(), STANDOFFS),
         np.linspace(low, high, int(np.ceil((high - low) / SPIN_STEP)) + 1),
     )  # fmt: skip

@@ -39,7 +39,7 @@ def critical_rates(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes |
     """
     hole = style.hole_of(plan, hole)
     motion = style.motion_of(hole)
-    rates = bracket(Drilling(plan.robot, plan.tool, hole.hole), motion.profile, motion.branch, SPIN_STEP)
+    rates = bracket(Drilling.of(plan, hole.hole), motion.profile, motion.branch, SPIN_STEP)
     chosen, slopes, here = rates.chosen, rates.slopes, rates.here
 
     heading = style.hole_heading(plan, hole)

@@ -212,7 +212,7 @@ def _robot_at_best(found: Dataset, cells: Cells) -> Array | None:
     target, direction = cells.target[row] / 1e3 @ T[:3, :3].T + T[:3, 3], cells.direction[column] @ T[:3, :3].T
     hole = question.hole(target, direction)
     psi = float(np.deg2rad(cells.psi_deg[row, column, 1]))
-    joints = joints_at(Drilling(question.robot, question.tool, hole), psi, int(cells.branch[row, column]))
+    joints = joints_at(Drilling.of(question, hole), psi, int(cells.branch[row, column]))
     return None if joints is None else in_frame(T, skeleton(question.robot, question.tool, joints)) * 1e3
 
 

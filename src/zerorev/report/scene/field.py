@@ -8,7 +8,6 @@ import numpy as np
 
 from zerorev.files.units import deg_per_mm
 from zerorev.model._arrays import Array
-from zerorev.model.robot import Robot
 from zerorev.motion.critical import NO_LEVER, kappa_of, spread_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
@@ -54,10 +53,10 @@ def critical(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> tu
     return deg_per_mm(kappa_of(theta_s, theta_psi)), theta_psi
 
 
-def over_limits(robot: Robot, joints: Array) -> np.ndarray:
+def over_limits(drilling: Drilling, joints: Array) -> np.ndarray:
     """Which joints no turn brings within their limits, shape (..., 6), of controller angles [rad], shape (..., 6)."""
     with np.errstate(invalid="ignore"):
-        return np.asarray(~turns_within(joints, joints, robot.limits)[1])
+        return np.asarray(~turns_within(joints, joints, drilling.limits)[1])
 
 
 def field(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Field:
@@ -74,9 +73,7 @@ def field(drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Field
     joints = drilling.angles(s, p)[..., branch, :]
     reached = ~np.isnan(joints[..., 0])
     spread = np.where(reached, spread_of(kappa), np.nan)
-    return Field(
-        standoff, psi, spread, theta_psi, stuck_joints(theta_psi), reached, over_limits(drilling.robot, joints)
-    )
+    return Field(standoff, psi, spread, theta_psi, stuck_joints(theta_psi), reached, over_limits(drilling, joints))
 
 
 def stuck_joints(theta_psi: Array) -> tuple[int, ...]:

@@ -116,7 +116,7 @@ def look(drilling: Drilling, profile: Profile, branch: int, settings: Settings) 
     score = found.score
     if score is None:
         path = joint_path(drilling, profile, branch, near=settings.near_joints)
-        faults = tuple(_faults(drilling.robot, profile, path))
+        faults = tuple(_faults(drilling.limits, profile, path))
         return Look(False, _why(drilling.robot, profile, path, found, branch), faults, None, (), None, False)
     marks = tuple(_mark(drilling.robot, profile, event) for event in score.events)
     steady = steady_rates(score, settings)
@@ -161,7 +161,7 @@ def _mark(robot: Robot, profile: Profile, event: Event) -> Mark:
     return Mark(event.joint, robot.joint_names[event.joint - 1], away, float(psi), event.leg)
 
 
-def _faults(robot: Robot, profile: Profile, path: JointPath) -> Iterator[Fault]:
+def _faults(limits: JointLimits, profile: Profile, path: JointPath) -> Iterator[Fault]:
     """Where along the motion the robot cannot follow: the stretches out of reach; else the jumps; else the limits."""
     distance = signed_distance(profile, path.distance)
     lost = np.isnan(path.joints[:, 0])
@@ -172,7 +172,7 @@ def _faults(robot: Robot, profile: Profile, path: JointPath) -> Iterator[Fault]:
     yield from (Fault("jump", None, float(distance[n]), float(distance[n + 1])) for n in jumps)
     for i in (joint - 1 for joint in path.over_limit):
         angle = path.joints[:, i]
-        beyond = (angle < robot.limits.lower[i]) | (angle > robot.limits.upper[i])
+        beyond = (angle < limits.lower[i]) | (angle > limits.upper[i])
         yield from (Fault("limit", i + 1, *stretch) for stretch in _stretches(distance, beyond))
 
 

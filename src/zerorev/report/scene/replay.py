@@ -82,7 +82,7 @@ def _hole(plan: Plan, answer: HolePlan, samples: int) -> dict[str, Any]:
     motion, score = answer.motion, answer.score
     played = None
     if motion is not None:
-        drilling = Drilling(plan.robot, plan.tool, answer.hole)
+        drilling = Drilling.of(plan, answer.hole)
         played = motion_data(drilling, motion.profile, motion.branch, plan.settings, samples)
     return {
         "id": answer.hole.id,

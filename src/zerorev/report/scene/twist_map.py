@@ -152,7 +152,7 @@ class _Place:
         """Zone, joints over their limits and near singularities (bits), each (..., B), at points (...,)."""
         robot = self.drilling.robot
         joints = self.drilling.angles(s, p)[..., self.branches, :]
-        limited = np.packbits(over_limits(robot, joints), axis=-1, bitorder="little")[..., 0]
+        limited = np.packbits(over_limits(self.drilling, joints), axis=-1, bitorder="little")[..., 0]
         with np.errstate(invalid="ignore"):
             near = from_singular(robot, joints) < SINGULAR_BELOW
         singular = np.packbits(near, axis=-1, bitorder="little")[..., 0]

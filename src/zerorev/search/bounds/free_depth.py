@@ -73,7 +73,7 @@ class _Bounder:
         self.problem, self.wanted, self.left = problem, wanted, boxes * CELLS_PER_BOX
         self.spent = 0
         settings, robot = problem.settings, problem.drilling.robot
-        lower, upper = model_limits(robot)
+        lower, upper = model_limits(problem.drilling)
         least = settings.min_rate * (1 - SAME_RATE) - NIL
         self.rules = Constraints(lower, upper, least, steepest=settings.max_twist * (1 + 1e-9))
         limited = tuple(bool(width < 2 * np.pi) for width in upper - lower)

@@ -6,17 +6,18 @@ import numpy as np
 
 from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes
 from zerorev.model.proof_tree import Claim, ProofTree
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.tree import Search
 
 __all__ = ["logged_tree"]
 
 
-def logged_tree(search: Search, branch: int | None) -> ProofTree:
+def logged_tree(search: Search, drilling: Drilling) -> ProofTree:
     """What a search has proven so far.
 
     Args:
         search: with its log kept.
-        branch: the only one that was searched, or None.
+        drilling: what was searched.
     """
     tree, rules = search.tree, search.rules
     nodes, closed = int(tree.counts[bound_nodes.NODES]), int(tree.counts[bound_nodes.LOGGED])
@@ -32,10 +33,11 @@ def logged_tree(search: Search, branch: int | None) -> ProofTree:
             depth=rules.depth,
             min_rate=rules.min_rate,
             psi_bound=rules.psi_bound,
-            branch=branch,
+            branch=drilling.hole.branch,
             weights=rules.weights,
             most_cost=rules.most_cost,
             value=search.bound,
+            limit_margin=drilling.limit_margin,
         ),
         spins=tree.nodes[:nodes, :2].copy(),
         parents=lists[:, bound_nodes.PARENT].copy(),

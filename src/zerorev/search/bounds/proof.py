@@ -205,11 +205,11 @@ class Prover:
     def _note(self, search: Search) -> None:
         """Keep the tree of a search that has ended."""
         if self.log is not None:
-            self.log.append(logged_tree(search, self.problem.drilling.hole.branch))
+            self.log.append(logged_tree(search, self.problem.drilling))
 
     def _search(self, min_rate: float, most: float, best: Candidate | None) -> Search:
         problem = self.problem
-        lower, upper = model_limits(problem.drilling.robot)
+        lower, upper = model_limits(problem.drilling)
         branch = problem.drilling.hole.branch
         flips = np.ones(2, dtype=bool)
         if branch is not None:

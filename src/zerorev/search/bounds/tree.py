@@ -10,7 +10,8 @@ import numpy.typing as npt
 from zerorev.kernels import bound_boxes, bound_multipliers, bound_nodes, bound_tree, intervals
 from zerorev.kernels.layout import BoundRules, TwistPlane
 from zerorev.model._arrays import Array
-from zerorev.model.robot import ArmGeometry, Robot
+from zerorev.model.robot import ArmGeometry
+from zerorev.motion.drilling import Drilling
 from zerorev.search.bounds.rates import Formulas, formulas
 
 __all__ = ["Search", "model_limits"]
@@ -52,10 +53,10 @@ class Tree(NamedTuple):
     candidate: Array
 
 
-def model_limits(robot: Robot) -> tuple[Array, Array]:
-    """Limits of the model angles [rad], each of shape (6,)."""
-    sign, offset = np.array(robot.arm.sign), np.array(robot.arm.offset)
-    ends = np.stack([robot.limits.lower, robot.limits.upper]) * sign - offset
+def model_limits(drilling: Drilling) -> tuple[Array, Array]:
+    """What the model angles may do [rad], each of shape (6,)."""
+    arm, limits = drilling.robot.arm, drilling.limits
+    ends = np.stack([limits.lower, limits.upper]) * np.array(arm.sign) - np.array(arm.offset)
     return ends.min(axis=0), ends.max(axis=0)
 
 

@@ -1,7 +1,8 @@
 """A proof, in ball arithmetic, that the continuous motion of a plan reverses no joint (issue 3: a certificate).
 
 On every piece of the two legs, and of the blended breakpoints: the rate of each joint has one sign throughout;
-the pose is in reach, in the posture of the first joints, and clear of singularities; no joint passes a limit. What is
+the pose is in reach, in the posture of the first joints, and clear of singularities; no joint passes a limit, or the
+room to it that the settings ask for. What is
 certified is the motion of the numbers given, as they are: of a plan file, those that stand in it.
 
 Each breakpoint is examined both sharp and blended, for a program may be stepped. A lead-in is not examined.
@@ -68,6 +69,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         blend=settings.blend,
         passing_blend=settings.passing_blend,
         claims=score,
+        limit_margin=settings.limit_margin,
     )
 
 
@@ -81,6 +83,7 @@ def certify_motion(
     blend: float = 0.0,
     passing_blend: float = 0.0,
     claims: Score | None = None,
+    limit_margin: float = 0.0,
 ) -> Certificate:
     """Prove or refute that a motion reverses no joint; for any numbers, such as those read back from a program.
 
@@ -94,9 +97,11 @@ def certify_motion(
         blend: radius of the blended corner [m]; 0 for none.
         passing_blend: radius of the blends at the other inner breakpoints [m]; 0 for none.
         claims: figures to be held against the motion, or None.
+        limit_margin: room that every joint has to keep to its limits [rad].
     """
     with ball_arithmetic():
         path = planned_motion(robot.arm, tool, hole, profile, blend, passing_blend)
         if claims is None:
-            return prove(robot, path, joints)
-        return prove(robot, path, joints, claimed_reversals(claims), partial(false_claims, claims))
+            return prove(robot, path, joints, margin=limit_margin)
+        untrue = partial(false_claims, claims)
+        return prove(robot, path, joints, claimed_reversals(claims), untrue, margin=limit_margin)

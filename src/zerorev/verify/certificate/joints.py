@@ -14,6 +14,7 @@ from zerorev.verify.certificate.path import Arc
 from zerorev.verify.certificate.piece import bounds
 from zerorev.verify.certificate.walk import LostError, Stretch
 from zerorev.verify.claims import JOINT_TOLERANCE
+from zerorev.verify.sound import too_near
 
 __all__ = ["Joints"]
 
@@ -25,6 +26,7 @@ class Joints:
     between these, and another one within the walk's bounds.
 
     Attributes:
+        margin: room that every joint has to keep to its limits [rad].
         refuted: what is proven to be wrong, one sentence each.
         low: the joints are nowhere below [rad], shape (6,).
         high: the joints are nowhere above [rad], shape (6,).
@@ -32,8 +34,8 @@ class Joints:
         greatest: the greatest angles that are met, or a little less [rad], shape (6,).
     """
 
-    def __init__(self, robot: Robot, setting: Setting, stated: Array) -> None:
-        self.robot, self.setting, self.stated = robot, setting, stated
+    def __init__(self, robot: Robot, setting: Setting, stated: Array, margin: float) -> None:
+        self.robot, self.setting, self.stated, self.margin = robot, setting, stated, margin
         self.refuted: list[str] = []
         self.low, self.high = np.full(6, np.inf), np.full(6, -np.inf)
         self.least, self.greatest = np.full(6, np.inf), np.full(6, -np.inf)
@@ -109,10 +111,11 @@ class Joints:
         limits = self.robot.limits
         for i, (name, joint) in enumerate(zip(self.robot.joint_names, joints, strict=True)):
             lower, upper = float(limits.lower[i]), float(limits.upper[i])
-            if i not in self._beyond and (joint < lower or joint > upper):
+            above, below = joint - lower, upper - joint
+            if i not in self._beyond and (above < self.margin or below < self.margin):
                 self._beyond.add(i)
-                beyond = float((lower - joint) if joint < lower else (joint - upper))
+                nearest = float(above if above < self.margin else below)
                 self.refuted.append(
-                    f"{name} is {np.rad2deg(beyond):.4g} deg beyond its limits "
+                    f"{name} is {too_near(nearest, self.margin)} its limits "
                     f"({np.rad2deg(lower):g} to {np.rad2deg(upper):g} deg) {place}"
                 )

@@ -88,7 +88,8 @@ def certify_program_hole(
         path = written_motion(
             plan.robot.arm, program, written, hole_plan.hole, at, root if isinstance(root, tuple) else None
         )
-        proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns)
+        margin = plan.settings.limit_margin
+        proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin)
     return replace(proof, reasons=tuple(_in_file(written, reason) for reason in proof.reasons))
 
 

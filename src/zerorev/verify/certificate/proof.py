@@ -29,6 +29,8 @@ def prove(
     stated: Array,
     reversing: Iterable[int] = (),
     untrue: Callable[[Proven], Iterable[str]] = lambda proven: (),
+    *,
+    margin: float = 0.0,
 ) -> Certificate:
     """Prove or refute that a motion reverses no joint.
 
@@ -40,6 +42,7 @@ def prove(
             follow. The first row gives the posture and the turns.
         reversing: joints that are said to reverse, counted from 0: they are not certified.
         untrue: one sentence for each statement about the motion that does not hold, from what is proven of it.
+        margin: room that every joint has to keep to its limits [rad].
     """
     posture = posture_of(robot.arm, stated[0])
     if posture is None:
@@ -49,7 +52,7 @@ def prove(
     walk.followed -= (leaving := set(reversing))
     walk.undecided += [f"{robot.joint_names[i]} is claimed to reverse: not certified" for i in sorted(leaving)]
     aloft = Walk(setting, robot.joint_names, set(), walk.budget)
-    joints = Joints(robot, setting, stated)
+    joints = Joints(robot, setting, stated, margin)
     before, stroke, blended = Slowest(), Slowest(), Slowest()
     try:
         ends = [joints.begin(motion.legs[0])]
@@ -67,9 +70,10 @@ def prove(
     walk.pieces += aloft.pieces
     walk.settle_pauses()
     room = joints.limit_distance()
-    if not joints.refuted and (room < 0).any():
-        near = [name for name, distance in zip(walk.names, room, strict=True) if distance < 0]
-        walk.undecided.append(f"{', '.join(near)}: whether a limit is passed could not be decided")
+    if not joints.refuted and (room < margin).any():
+        near = [name for name, distance in zip(walk.names, room, strict=True) if distance < margin]
+        kept = f"the room of {np.rad2deg(margin):g} deg to a limit is kept" if margin else "a limit is passed"
+        walk.undecided.append(f"{', '.join(near)}: whether {kept} could not be decided")
     knots = ends[motion.start], ends[motion.turn], ends[motion.last]
     walk.refuted += untrue(
         Proven(walk.names, walk.followed, knots, motion.leg_lengths, stroke.met, joints.limit_distance_met())

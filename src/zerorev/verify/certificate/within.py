@@ -2,7 +2,8 @@
 
 The motion is fixed to the part, as a program's points are in `$BASE`. What is certified under every placement error
 within the tolerance is what the certificate says without one: no joint reverses, no limit is passed, every pose is in
-reach and clear of singularities, also where breakpoints are blended. The motion threshold is not.
+reach and clear of singularities, also where breakpoints are blended. The motion threshold is not, and of the room at
+the joint limits (`limit_margin`) nothing need be left: it is kept for such errors.
 """
 
 from __future__ import annotations

@@ -96,9 +96,12 @@ class Examiner:
         self.arm = arm_of(robot.arm, tool, hole)
         self.lifted = lifted(self.arm)
         self.weights = [float(weight) for weight in claim.weights]
-        sign, offset, limits = robot.arm.sign, robot.arm.offset, robot.limits
+        sign, offset, limits, margin = robot.arm.sign, robot.arm.offset, robot.limits, claim.limit_margin
         ends = [
-            sorted(float(arb(end) * int(sign[i]) - arb(offset[i])) for end in (limits.lower[i], limits.upper[i]))
+            sorted(
+                float(end * int(sign[i]) - arb(offset[i]))
+                for end in (arb(limits.lower[i]) + margin, arb(limits.upper[i]) - margin)
+            )
             for i in SIX
         ]
         self.limits = [(lower / (2 * np.pi), upper / (2 * np.pi)) for lower, upper in ends]

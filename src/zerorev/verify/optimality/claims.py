@@ -113,6 +113,7 @@ class _Rules:
         weights = claim.weights * self.weights.sum()
         same = np.allclose(weights, self.weights * claim.weights.sum(), rtol=SAME, atol=0)
         alike = claim.psi_bound == bound and claim.branch == self.hole.branch and same
+        alike = alike and claim.limit_margin <= self.settings.limit_margin
         return bool(deep and alike and claim.min_rate <= min_rate)
 
     def scale(self, claim: Claim) -> float:

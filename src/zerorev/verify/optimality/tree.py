@@ -89,7 +89,7 @@ def most_reversals(tree: ProofTree, robot: Robot) -> float:
     twist = slope * claim.depth
     if (claim.psi_bound > 0 and 2 * claim.psi_bound <= twist) or (claim.value < PER_REVERSAL and claim.value <= twist):
         return np.inf
-    ranges = (robot.limits.upper - robot.limits.lower) * (1 + 1e-12)
+    ranges = (robot.limits.upper - robot.limits.lower - 2 * claim.limit_margin) * (1 + 1e-12)
     least = float(claim.weights.min())
     asked = claim.most_cost / least if least > 0 else np.inf
     allowed = np.floor((twist - ranges.sum()) / ranges.max())

@@ -156,7 +156,7 @@ class _Sender:
         hole, motion, job = state.hole, shown(state), state.job
         data: dict[str, Any] = {"hole": state.selected, "planned": None, "held": None}
         if hole is not None and motion is not None and job is not None:
-            profile, branch, drilling = motion.profile, motion.branch, Drilling(job.robot, job.tool, hole)
+            profile, branch, drilling = motion.profile, motion.branch, Drilling.of(job, hole)
             data["planned"] = track_data(drilling, profile, branch, job.settings)
             still = held(profile)
             made_of = (id(hole), id(job.settings), branch, still.standoff.tobytes(), float(still.psi[0]))

@@ -62,7 +62,7 @@ def _options(state: State) -> dict[str, Any]:
     job, hole, motion = state.job, state.hole, shown(state)
     if job is None or hole is None or motion is None:
         return options(None, None, None)
-    drilling = Drilling(job.robot, job.tool, hole)
+    drilling = Drilling.of(job, hole)
     found = joint_curves(drilling, motion.profile, motion.branch, job.settings, SAMPLES)
     here = look(drilling, motion.profile, motion.branch, job.settings)
     constant = look(drilling, held(motion.profile), motion.branch, job.settings)

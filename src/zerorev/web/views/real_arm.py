@@ -107,7 +107,7 @@ def _lost(session: Session, form: Mapping[str, ui.input]) -> None:
         thrust = job.settings.thrust if asked is None else asked.thrust
         lost = None
         if motion is not None:
-            drilling = Drilling(job.robot, job.tool, hole)
+            drilling = Drilling.of(job, hole)
             lost = twins_lost_motion(drilling, motion.profile, motion.branch, thrust)
         own, swapped = lost_motion_words(lost)
         here.set_text(f"{own} mm" + (f" with {thrust:g} N" if thrust else ""))

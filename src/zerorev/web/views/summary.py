@@ -76,7 +76,7 @@ def _headline(state: State, job: Job) -> Headline:
     assert hole is not None
     by_hand = None
     if state.steered is not None:
-        by_hand = look(Drilling(job.robot, job.tool, hole), state.steered.profile, state.steered.branch, job.settings)
+        by_hand = look(Drilling.of(job, hole), state.steered.profile, state.steered.branch, job.settings)
     branch = None if motion is None else motion.branch
     return headline(hole, state.answer, job.robot.joint_names, job.settings, by_hand, branch)
 

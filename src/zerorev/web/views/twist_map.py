@@ -64,11 +64,12 @@ class _Wanted(NamedTuple):
     branch: int | None
     corner: float
     thrust: float
+    limit_margin: float
 
     @property
     def drilling(self) -> Drilling:
         """The three together."""
-        return Drilling(self.robot, self.tool, self.hole)
+        return Drilling(self.robot, self.tool, self.hole, self.limit_margin)
 
     def same(self, other: _Wanted) -> bool:
         """Whether it is the same map: robots, tools and holes are not compared number by number."""
@@ -229,7 +230,7 @@ class _TwistMap:
             self.element.run_method("show_motion", {**_empty(state), "seq": seq, "fit": fit})
             return
         job, hole = state.job, state.hole
-        drilling = Drilling(job.robot, job.tool, hole)
+        drilling = Drilling.of(job, hole)
         seen = motion_look.look(drilling, motion.profile, motion.branch, job.settings)
         data = motion_data(job.robot, motion.profile, seen)
         data |= loads_data(drilling, motion.profile, motion.branch, job.settings.thrust)
@@ -246,7 +247,9 @@ class _TwistMap:
             self.element.run_method("show_map", None)
             return
         corner = float(self.motion.profile.standoff.min()) if self.motion else state.job.settings.corner
-        wanted = _Wanted(state.job.robot, state.job.tool, state.hole, self.branch, corner, state.job.settings.thrust)
+        job = state.job
+        thrust, margin = job.settings.thrust, job.settings.limit_margin
+        wanted = _Wanted(job.robot, job.tool, state.hole, self.branch, corner, thrust, margin)
         if self.drawn is not None and wanted.same(self.drawn):
             return
         self.drawn = wanted
@@ -277,9 +280,7 @@ class _TwistMap:
         for branch in range(8):
             label = f"{branch}"
             if motion is not None:
-                found = motion_look.look(
-                    Drilling(job.robot, job.tool, state.hole), motion.profile, branch, job.settings
-                )
+                found = motion_look.look(Drilling.of(job, state.hole), motion.profile, branch, job.settings)
                 count = "cannot be run" if found.reversals is None else f"{found.reversals} reversals"
                 label += f" · {count}" if found.reversals != 1 else " · 1 reversal"
             options.append({"value": str(branch), "label": label})
