@@ -90,7 +90,7 @@ class TestThreshold:
         answer = plan(robot, tool, replace(positions[2].hole, depth=0.036))
         assert answer.score.reversals == 0
         assert 0 < answer.score.min_rate.min() < Settings().min_rate
-        assert kinds(answer.findings) == ["threshold"]
+        assert kinds(answer.findings) == ["threshold", "near_limit"]
         message = answer.findings[0].message
         assert f"{np.rad2deg(answer.score.min_rate.min()) / 1e3:.5f} deg/mm" in message
         assert "threshold of 0.01 deg/mm" in message
@@ -135,7 +135,7 @@ class TestDeepest:
         assert 25e-3 < answer.deepest < 30e-3  # theory §7
         assert answer.score.reversals == 0
         assert answer.verified.passed
-        assert kinds(answer.findings) == []
+        assert kinds(answer.findings) == ["near_limit"]
         assert answer.hole.profile is None
 
     def test_from_a_deeper_corner_the_depth_counts_from_the_target(self, robot, tool, positions):
