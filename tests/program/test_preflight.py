@@ -154,10 +154,10 @@ def test_a_move_of_too_great_a_turn_is_an_error(published, plan_of, spoil):
     (hole,) = program.holes
     far = spoil(hole.moves[1], psi=hole.moves[1].psi - np.deg2rad(170))
     broken = spoil(program, holes=(spoil(hole, moves=(hole.moves[0], far, hole.moves[2])),))
-    messages = [f.message for f in preflight(broken, plan) if f.kind == "tool_turn"]
+    messages = [f.message for f in preflight(broken, plan) if f.kind == "move_turn"]
     assert len(messages) == 2
     assert "linear move 2 turns the tool by 190.10 deg" in messages[0]
-    assert all(f.level == "error" for f in preflight(broken, plan) if f.kind == "tool_turn")
+    assert all(f.level == "error" for f in preflight(broken, plan) if f.kind == "move_turn")
 
 
 def test_joints_that_are_not_at_the_poses_are_an_error(published, plan_of, spoil):

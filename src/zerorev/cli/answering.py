@@ -17,6 +17,7 @@ from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.planning.job import answers, in_sequence, unanswered
 from zerorev.planning.sequence import sequenced
+from zerorev.planning.tool_turn import ToolTurn
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown, minutes
@@ -56,14 +57,16 @@ def run(
         said = tried.findings()
         source = (lambda: map(as_written, kept)) if part is None else part.answers
         whole, changed = _in_sequence(job, head, source, machines)
-        shown = Shown(whole)
+        shown, turns = Shown(whole), ToolTurn(whole)
         keep = figures is not None or (json and output is None)
         holes = list[HolePlan]()
         for n, answer in enumerate(source()):
             final = changed.get(n, answer)
             shown.add(final)
+            turns.add(final)
             if keep:
                 holes.append(final)
+        said = (*said, *turns.findings())
         if part is not None:
             part.finish(whole, changed, said)
     if output is not None and fresh:  # what was kept from another run was not checked by this one

@@ -102,7 +102,7 @@ def _question(job: Job) -> Question:
 def _reached(job: Job, hole: Hole) -> bool:
     """Whether the target is reached at all, regardless of the joint limits."""
     spins = target_spins(None, SPINS)
-    return not np.isnan(Drilling(job.robot, job.tool, hole).angles(0.0, spins)).all()
+    return not np.isnan(Drilling.of(job, hole).angles(0.0, spins)).all()
 
 
 def _frame(job: Job, holes: Sequence[Hole]) -> tuple[Array, int, bool]:

@@ -35,6 +35,7 @@ FindingKind = Literal[
     "long_turn",
     "lost_cycles",
     "lost_motion",
+    "move_turn",
     "near_limit",
     "near_part",
     "no_stroke",

@@ -26,6 +26,7 @@ from zerorev.motion.loads import lost_motion_of
 from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
+from zerorev.planning.tool_turn import hole_turn
 from zerorev.program.ways import Way
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.cut_short import cut_short
@@ -272,7 +273,10 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
                 message += ", which no motion of straight legs with so few reversals keeps (proven)"
             message += "; no motion with so few reversals was found that keeps more"
         found.append(Finding("warning", "threshold", message, hole.id))
-    found += limit_findings(drilling, settings, answer)
+    assert answer.motion is not None
+    way = Way.of(drilling, answer.motion, settings)
+    found += limit_findings(drilling, answer, way)
+    found += hole_turn(answer, way.lead_in)
     found += load_findings(drilling, settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)

@@ -15,6 +15,7 @@ from zerorev.model.tool import Tool
 from zerorev.planning.hole import lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import likely_mistakes
 from zerorev.planning.sequence import Sequenced, sequenced
+from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.workers import HERE, Machines, Workers, interrupts_held_back
 
@@ -58,7 +59,7 @@ def plan_job(
     sequence = sequenced(job, lambda: written, choose=strokes == "asked", machines=Machines(workers, scheduler))
     holes = tuple(sequence.changed.get(n, answer) for n, answer in enumerate(found))
     whole = in_sequence(unanswered(job, strokes, holes), sequence)
-    return replace(whole, findings=(*whole.findings, *tried.findings()))
+    return with_tool_turn(replace(whole, findings=(*whole.findings, *tried.findings())))
 
 
 def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> Plan:

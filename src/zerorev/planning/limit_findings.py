@@ -9,11 +9,10 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import Event, HolePlan, LegName, Motion
-from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import event_distance
 from zerorev.motion.joint_path import FULL_TURN, joints_along
-from zerorev.program.lead_in import find_lead_in
+from zerorev.program.ways import Way
 
 __all__ = ["NEAR", "limit_findings"]
 
@@ -22,24 +21,24 @@ SAMPLES = 400  # of a leg, at most
 SAID = 0.01  # [deg] to which a distance is said
 
 
-def limit_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> Iterator[Finding]:
-    """One for each joint that comes within 1 deg of a limit of the robot, on the legs or in the lead-in.
+def limit_findings(drilling: Drilling, answer: HolePlan, way: Way) -> Iterator[Finding]:
+    """One for each joint that comes within 1 deg of a limit of the robot, on the linear moves of a hole.
 
     Args:
         drilling: robot, tool and hole.
-        settings: for the length of the lead-in.
         answer: with a motion and its score.
+        way: to the motion and away from it.
     """
     motion, score = answer.motion, answer.score
-    if motion is None or score is None:
-        return
+    assert motion is not None
+    assert score is not None
     limits, names = drilling.robot.limits, drilling.robot.joint_names
-    start = find_lead_in(drilling, motion, settings.lead_in).joints
-    room = np.minimum(start - limits.lower, limits.upper - start)
+    outside = np.array([at for at, _ in _ends(way)])
+    room = np.minimum(outside - limits.lower, limits.upper - outside)
     if min(score.limit_distance.min(), room.min()) >= NEAR:
         return
-    # between these places no joint turns round
-    places = [(start, "where the lead-in begins"), *_breakpoints(motion), *_reversals(drilling, motion, score.events)]
+    # between these no joint turns round, but in the air; of places that are one the first is named
+    places = [*_breakpoints(motion), *_ends(way), *_reversals(drilling, motion, score.events)]
     joints = np.array([at for at, _ in places])
     below, above = joints - limits.lower, limits.upper - joints
     room = np.minimum(below, above)
@@ -55,6 +54,13 @@ def limit_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> 
             " place may bring it beyond; limit_margin_deg keeps room there"
         )
         yield Finding("warning", "near_limit", message, answer.hole.id)
+
+
+def _ends(way: Way) -> Iterator[tuple[Array, str]]:
+    """Of the linear moves outside the stroke."""
+    yield way.lead_in.joints, "where the lead-in begins"
+    yield way.approach.joints, "where the approach begins"
+    yield way.retract.joints, "where the arm stops after the retract"
 
 
 def _breakpoints(motion: Motion) -> Iterator[tuple[Array, str]]:

@@ -31,6 +31,7 @@ from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.hole import cycle_time, lever_findings, motion_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
 from zerorev.planning.sequence import moves_of, time_of
+from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.check import subject, verify_hole
 from zerorev.verify.digits import moved_figures
@@ -84,8 +85,7 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
         workers: processes to run it on; None: one per core where it is worth it. The outcome is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
     """
-    said = _but(stated.findings, "unfinished", *GUESSES), lever_findings(stated.robot, stated.tool)
-    wrong = [_error(message, None) for message in findings_differ(*said)]
+    wrong: list[Finding] = []
     holes: list[HolePlan] = []
     if progress:
         progress(0, len(stated.holes))
@@ -122,24 +122,29 @@ class CheckedHole(NamedTuple):
 def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
     """The order has to name each hole that has a motion, the moves have to be those between them in that order.
 
-    Together the motions must not travel more than the least by more than the share that was allowed.
+    What is said of the whole plan has to be what comes out of that. Together the motions must not travel more than the
+    least by more than the share that was allowed.
     """
     travel = sum(hole.score.travel for hole in stated.holes if hole.score is not None)
     allowed = (1 + stated.settings.posture_freedom) * least
     if travel > allowed * (1 + BETTER):
         yield differ("travel_deg of all holes", float(np.rad2deg(travel)), float(np.rad2deg(allowed)))
-    if not stated.order:
+    said, found = _but(stated.findings, "unfinished", *GUESSES), lever_findings(stated.robot, stated.tool)
+    if not stated.order:  # it has no moves to say anything of
+        yield from findings_differ(_but(said, "tool_turn"), found)
         return
     moving = [hole.hole.id for hole in stated.holes if hole.motion is not None]
     if sorted(stated.order) != sorted(moving):
         yield differ("order", list(stated.order), moving)
         return
     moves = moves_of(stated)
-    found = replace(stated, transitions=moves, cycle_time=time_of((hole.cycle_time for hole in stated.holes), moves))
-    data = sequence_data(stated), sequence_data(found)
+    time = time_of((hole.cycle_time for hole in stated.holes), moves)
+    again = with_tool_turn(replace(stated, transitions=moves, cycle_time=time, findings=found))
+    yield from findings_differ(said, again.findings)
+    data = sequence_data(stated), sequence_data(again)
     yield from fields_differ(*data, {}, fields=HEAD_FIELDS)
-    said = ([finding for move in each.transitions for finding in move.findings] for each in (stated, found))
-    yield from (f"transitions, {message}" for message in findings_differ(*said))
+    of_moves = ([finding for move in each.transitions for finding in move.findings] for each in (stated, again))
+    yield from (f"transitions, {message}" for message in findings_differ(*of_moves))
 
 
 def without_proofs(plan: Plan) -> Plan:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
@@ -74,7 +75,7 @@ def _joints(plan: Plan, hole_plan: HolePlan, program: Program, hole: HoleProgram
     return tuple(found)
 
 
-def _beyond(robot: Robot, joints: Array, margin: float) -> Array:
+def _beyond(robot: Robot, joints: Array, margin: float) -> npt.NDArray[np.bool_]:
     """Which joints leave the limits less a margin [rad] at any of some postures [rad], shape (n, 6); shape (6,)."""
     limits = robot.allowed(margin)
     out = (joints < limits.lower - ROUND_OFF) | (joints > limits.upper + ROUND_OFF)
@@ -132,7 +133,7 @@ def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
         if turn > GREATEST_TURN + ROUND_OFF or abs(turn - by_pose) > 1e-6:
             message = f"linear move {number} turns the tool by {np.rad2deg(turn):.2f} deg, its poses differ by "
             message += f"{np.rad2deg(by_pose):.2f} deg; at most {np.rad2deg(GREATEST_TURN):g} deg are allowed"
-            found.append(Finding("error", "tool_turn", message, hole.id))
+            found.append(Finding("error", "move_turn", message, hole.id))
         pose = move.T_part_tool
     if turn_speed(hole) > USUAL_TURN_SPEED:
         message = f"the tool turns at {np.rad2deg(turn_speed(hole)):.0f} deg/s: see that the controller's limit of the "
