@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import shutil
 
+import numpy as np
 import pytest
 
 from oracles.places import ROOT
 from zerorev import cli
 from zerorev.cli import main
+from zerorev.files.io import read_job
 
 PRACTICE = ROOT / "tests/data/practice"
 
@@ -114,12 +116,91 @@ def test_a_robot_description_as_a_robot(capsys, tmp_path):
         assert "is a robot description (URDF), from which no robot is read" in said
 
 
+def test_meshes_in_the_package_of_a_description(tmp_path):
+    """As the package lies on a disk: urdf/ beside meshes/, named by package://."""
+    pytest.importorskip("trimesh", reason="meshes need trimesh (pip install 'zerorev[view]')")
+    from zerorev.errors import InputError
+    from zerorev.files.io import read_robot
+    from zerorev.report.scene.urdf_meshes import read_meshes
+
+    robot = read_robot("kuka_kr6_r700_2")
+    there = shutil.copytree(PRACTICE / "c12_urdf/kr6_support", tmp_path / "ws/src/kr6_support")
+    links = read_meshes(there / "urdf/kr6.urdf", robot)
+    assert [len(link) for link in links] == [1] * 7
+    other = there.rename(there.with_name("kr6_support-1.0"))  # a folder of another name is not the package
+    with pytest.raises(InputError, match="called as its package"):
+        read_meshes(other / "urdf/kr6.urdf", robot)
+
+
+def test_no_mesh_is_read_beside_the_package(tmp_path):
+    from zerorev.errors import InputError
+    from zerorev.files.urdf import read_urdf
+
+    there = shutil.copytree(PRACTICE / "c12_urdf/kr6_support", tmp_path / "kr6_support")
+    (tmp_path / "secret.stl").write_bytes(b"solid")
+    (there / "meshes/link.stl").symlink_to(tmp_path / "secret.stl")
+    text = (there / "urdf/kr6.urdf").read_text(encoding="utf-8")
+    for name in ("kr6_support/../secret.stl", "kr6_support/meshes/link.stl", "../secret.stl", "/secret.stl",
+                 f"{tmp_path.name}/../secret.stl"):  # fmt: skip
+        (there / "urdf/kr6.urdf").write_text(text.replace("kr6_support/meshes/kr6/base_link.stl", name))
+        with pytest.raises(InputError, match="mesh"):
+            read_urdf(there / "urdf/kr6.urdf")
+
+
 def test_xacro_says_how_to_expand_it():
     from zerorev.errors import InputError
     from zerorev.files.urdf import read_urdf
 
     with pytest.raises(InputError, match=r"is xacro.*expand it first \(xacro kr6\.xacro > kr6\.urdf\)"):
         read_urdf(PRACTICE / "c12_urdf/kr6_support/kr6.xacro")
+
+
+@pytest.mark.parametrize(("axis", "direction"), [("x", [0, 0, -1]), ("z", [1, 0, 0])])
+def test_angles_of_a_hole(capsys, tmp_path, axis, direction):
+    """A frame has three axes: the one that drills has to be said."""
+    said = refused(capsys, "plan", PRACTICE / "c18_abc/euler.yaml")
+    assert "drill_axis (hole 'a'): 'left out' is not among the choices" in said
+    assert "which axis of the frame of abc_deg points into the material" in said
+    text = (PRACTICE / "c18_abc/euler.yaml").read_text(encoding="utf-8")
+    (tmp_path / "job.yaml").write_text(text.replace("abc_deg: [0, 90, 0]", f"abc_deg: [0, 90, 0], drill_axis: {axis}"))
+    _, plan = warnings(capsys, tmp_path / "job.yaml")
+    assert plan["holes"][0]["direction"] == pytest.approx(direction, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ("abc_deg: [0, 90, 0], direction: [1, 0, 0]", "drill_axis (hole 'a'): 'beside direction' is not among"),
+        ("drill_axis: x, direction: [1, 0, 0]", "drill_axis (hole 'a'): 'beside direction' is not among"),
+        ("drill_axis: x", "drill_axis (hole 'a'): 'without abc_deg' is not among"),
+        ("abc_deg: [0, 90], drill_axis: x", "abc_deg (hole 'a'): has 2 entries"),
+        ("abc_deg: [0, ninety, 0], drill_axis: x", "abc_deg[1] (hole 'a'): 'ninety' is not a number"),
+        ("abc_deg: [0, 90, 0], drill_axis: y", "drill_axis (hole 'a'): 'y' is not among the choices"),
+    ],
+)
+def test_angles_of_a_hole_that_cannot_be_read(capsys, tmp_path, given, said):
+    text = (PRACTICE / "c18_abc/euler.yaml").read_text(encoding="utf-8")
+    (tmp_path / "job.yaml").write_text(text.replace("abc_deg: [0, 90, 0]", given))
+    assert said in refused(capsys, "plan", tmp_path / "job.yaml")
+
+
+def test_any_angles_of_a_hole(tmp_path):
+    """Against three turns one after the other: A about Z, B about the new Y, C about the new X."""
+    rng = np.random.default_rng(1)
+    text = (PRACTICE / "c18_abc/euler.yaml").read_text(encoding="utf-8")
+    for _ in range(10):
+        A, B, C = (float(angle) for angle in rng.uniform(-180, 180, 3).round(6))
+        a, b, c = np.deg2rad([A, B, C])
+        R = np.array([[np.cos(a), -np.sin(a), 0], [np.sin(a), np.cos(a), 0], [0, 0, 1]])
+        R = R @ np.array([[np.cos(b), 0, np.sin(b)], [0, 1, 0], [-np.sin(b), 0, np.cos(b)]])
+        R = R @ np.array([[1, 0, 0], [0, np.cos(c), -np.sin(c)], [0, np.sin(c), np.cos(c)]])
+        for axis, column in (("x", 0), ("z", 2)):
+            given = f"abc_deg: [{A}, {B}, {C}], drill_axis: {axis}"
+            (tmp_path / "job.yaml").write_text(
+                text.replace("abc_deg: [0, 90, 0]", given) + "psi_reference: [0.3, 0.4, 0.5]\n"
+            )
+            (hole,) = read_job(tmp_path / "job.yaml").holes
+            np.testing.assert_allclose(hole.direction, R[:, column], rtol=0, atol=1e-12)
 
 
 def test_pecking_is_not_planned_and_said_so(capsys):

@@ -22,6 +22,7 @@ from zerorev.files.io import job_from_dict, plan_to_json, read_plan, write_plan
 from zerorev.files.part import Part
 from zerorev.planning import job as jobs
 from zerorev.planning.sequence import sequenced
+from zerorev.planning.tool_turn import ToolTurn
 from zerorev.workers import Machines
 
 CLI = [sys.executable, "-c", "import sys; from zerorev.cli import main; sys.exit(main())"]
@@ -78,7 +79,11 @@ def whole(part_path, job):
         for answer in jobs.answers(job, part=part):
             del answer
         found = sequenced(job, part.answers)
-        part.finish(jobs.in_sequence(head, found), found.changed)
+        made = jobs.in_sequence(head, found)
+        turns = ToolTurn(made)
+        for n, answer in enumerate(part.answers()):
+            turns.add(found.changed.get(n, answer))
+        part.finish(made, found.changed, turns.findings())
     return target.read_bytes()
 
 

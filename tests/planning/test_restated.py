@@ -60,13 +60,16 @@ MAY_CHANGE = {
     "part_frame.xyz_mm", "part_frame.rpy_deg",
     # what only a program depends on
     "settings.lead_in_mm", "settings.feed_mm_s.retract", "settings.spindle_rpm", "settings.blend_shortfall_mm",
-    # a blend that makes no joint reverse, a bound that does not bind, a wish that changes no turn and no choice, a
+    # a blend that makes no joint reverse, bounds and margins that do not bind, a wish that changes no turn and no choice, a
     # lead-in that is kept as it is
     "settings.keep_lead_in",
     "settings.blend_mm", "settings.psi_bound_deg", "settings.near_joints_deg", "settings.max_twist_deg_per_mm",
+    "settings.limit_margin_deg",
     "settings.reversal_weights", "settings.min_rate_rule", "settings.min_rate_deg_per_mm", "settings.deepen_corner",
     "settings.feed_mm_s.plunge", "settings.objective", "settings.objective.travel", "settings.objective.limit_distance",
     "settings.joint_stiffness_nm_per_rad", "settings.legs",
+    # of a plan of one hole, which has no moves between holes
+    "settings.clearance_mm", "settings.safe_height_mm", "settings.part_thickness_mm",
     # a budget that the proof ends within
     "settings.proof_boxes",
     # of a hole that is out of reach
@@ -265,8 +268,9 @@ def test_a_finding_that_nothing_gives_rise_to(files):
 
 def test_a_finding_of_the_whole_plan(files):
     data = files("straight")
-    data["findings"] = [{"level": "warning", "kind": "wrist_offset", "message": "e = 0", "hole": None}]
-    one_line(data, "findings[0]: stated warning wrist_offset", "found none")
+    assert [finding["kind"] for finding in data["findings"]] == ["tool_turn"]
+    data["findings"].append({"level": "warning", "kind": "wrist_offset", "message": "e = 0", "hole": None})
+    one_line(data, "findings[1]: stated warning wrist_offset", "found none")
 
 
 def test_a_baseline_that_cannot_be_run(files):

@@ -28,7 +28,8 @@ def replay(
         plan: The plan file (JSON).
         output: The HTML file.
         hole: Only this hole; may be given several times. By default all holes of the plan.
-        urdf: Description of the plan's robot (URDF), whose meshes are shown; they lie in the same folder.
+        urdf: Description of the plan's robot (URDF), whose meshes are shown; they lie in the same folder, or
+            in a folder above it that is called as the package they name (package://).
     """
     from zerorev.files.io import read_plan
     from zerorev.files.output import write_text

@@ -23,7 +23,8 @@ def view(
             three positions at which the thesis drilled.
         port: The port to serve it on; by default 8780, or a free one where that is taken.
         no_browser: Only print the address, and open nothing.
-        urdf: Description of the robot of what is opened (URDF), whose meshes are shown; they lie in the same folder.
+        urdf: Description of the robot of what is opened (URDF), whose meshes are shown; they lie in the same folder, or
+            in a folder above it that is called as the package they name (package://).
     """
     need("nicegui", "nicegui", "view", "view")
     if urdf is not None:

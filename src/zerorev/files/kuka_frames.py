@@ -6,8 +6,13 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["KEYS", "in_own_keys"]
+import numpy as np
 
+from zerorev.model._arrays import rotation_rpy
+
+__all__ = ["KEYS", "in_own_keys", "with_direction"]
+
+DRILL_AXES = {"x": 0, "z": 2}
 AXES, ANGLES = ("x", "y", "z"), ("a", "b", "c")
 KEYS = {
     **{axis: f"a number [mm]: {axis.upper()} of the frame, in place of xyz_mm (tcp_mm of a tool)" for axis in AXES},
@@ -53,6 +58,26 @@ def in_own_keys(data: Any, place: str) -> Any:
     else:
         rest["rpy_deg"] = [found.get(name, 0.0) for name in ANGLES[::-1]]
     return rest
+
+
+def with_direction(data: Any) -> Any:
+    """A hole with the direction that KUKA's angles and the axis of their frame say; what is wrong with them is left.
+
+    Args:
+        data: as it was read; with `abc_deg` in place of `direction`, and `drill_axis` beside it.
+    """
+    if not isinstance(data, Mapping) or ("abc_deg" not in data and "drill_axis" not in data):
+        return data
+    found = dict(data)
+    if "direction" in data or "abc_deg" not in data:
+        return found | {"drill_axis": "beside direction" if "direction" in data else "without abc_deg"}
+    found.setdefault("drill_axis", "left out")
+    given, axis = data["abc_deg"], DRILL_AXES.get(str(found["drill_axis"]))
+    if axis is None or not isinstance(given, list) or [type(each) in (int, float) for each in given] != [True] * 3:
+        return found | {"direction": [0.0, 0.0, 1.0]}  # the form refuses the others
+    del found["abc_deg"], found["drill_axis"]
+    yaw, pitch, roll = np.deg2rad(np.array(given, dtype=float))
+    return found | {"direction": rotation_rpy(roll, pitch, yaw)[:, axis].tolist()}
 
 
 def _number(text: str) -> Any:

@@ -19,7 +19,7 @@ from pydantic import (
     model_validator,
 )
 
-from zerorev.files.kuka_frames import KEYS, in_own_keys
+from zerorev.files.kuka_frames import KEYS, in_own_keys, with_direction
 from zerorev.files.stated_forms import Form, Many, Words, keys_of, kind
 from zerorev.model.controller import CALL, HEADER_LINE
 from zerorev.model.settings import Settings
@@ -298,12 +298,29 @@ class SettingsForm(Form):
     )
 
 
+def _with_direction_of_a_frame(schema: dict[str, Any]) -> None:
+    """The published form of a hole has a direction, or the angles of a frame."""
+    schema["required"].remove("direction")
+    schema["anyOf"] = [{"required": ["direction"]}, {"required": ["abc_deg", "drill_axis"]}]
+
+
 class HoleForm(Form):
     """One hole of a job, in the part frame."""
+
+    model_config = ConfigDict(json_schema_extra=_with_direction_of_a_frame)
 
     id: Id = Field(description="text or a whole number: how the hole is called; one line, 1 to 100 characters")
     target_mm: PlaceMm = Field(description="three numbers [mm]: bottom of the stroke, part frame")
     direction: Three = Field(description="three numbers, not all 0: into the material, part frame, of any length")
+    abc_deg: AnglesDeg | None = Field(
+        default=None,
+        description="three numbers [deg], in place of direction: KUKA's A, B, C of the hole's frame, part frame; "
+        "drill_axis beside it says which axis of that points into the material",
+    )
+    drill_axis: Literal["x", "z"] | None = Field(
+        default=None,
+        description="x or z: which axis of the frame of abc_deg points into the material; in place of direction",
+    )
     depth_mm: Depth | None = Field(
         default=None, description="a number above 0 [mm]: the stroke; zerorev depth alone does without it"
     )
@@ -324,6 +341,11 @@ class HoleForm(Form):
     group: Id | None = Field(
         default=None, description="text or a whole number: with which it is drilled where the order is by groups"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _direction(cls, data: Any) -> Any:
+        return with_direction(data)
 
 
 class ColumnsForm(Form):

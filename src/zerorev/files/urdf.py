@@ -1,7 +1,7 @@
 """A robot description (URDF), read as data: links, joints, what is to be seen of each link. No mesh is opened here.
 
 XML of unknown origin: document types and entities are refused before anything is made of them, and a mesh is only ever
-looked for inside the folder of the file itself.
+looked for inside the folder of the file itself, or of the package above it that the mesh names.
 """
 
 from __future__ import annotations
@@ -91,8 +91,8 @@ def read_urdf(path: str | Path) -> Description:
         path: the file (.urdf, not .xacro).
 
     Raises:
-        InputError: not such a file, XML with a document type or entities, a mesh outside of the file's folder, or other
-            than six turning joints in one chain.
+        InputError: not such a file, XML with a document type or entities, a mesh outside of the file's folder and of
+            its package's, or other than six turning joints in one chain.
     """
     root = _xml(Path(path))
     for tag in ("joint", "link", "material", "link/visual"):
@@ -206,19 +206,30 @@ def _visual(entry: Any, folder: Path, colours: dict[str, str], where: str) -> Vi
 
 
 def _inside(name: str, folder: Path, where: str) -> Path:
-    """The mesh's file, which must lie in the folder of the description."""
+    """The mesh's file, which must lie in the folder of the description, or in that of the package it names."""
     accepted = "a path inside the file's folder, or package://"
     try:
         parts = urlsplit(name)
         if len(name) > LONGEST_NAME or parts.scheme not in ("", "package", "file"):
             raise InputError(f"the mesh {reprlib.repr(name)}", where=where, accepted=accepted)
-        for path in _places(PurePosixPath(parts.path.lstrip("/") if parts.scheme else name), folder):
+        inner = PurePosixPath(parts.path.lstrip("/") if parts.scheme else name)
+        package = _package(parts.netloc, folder) if parts.scheme == "package" else None
+        places = [(folder, path) for path in _places(inner, folder)]
+        if package is not None:
+            places.append((package, package / inner))
+        for within, path in places:
             found = path.resolve()
-            if found.is_relative_to(folder) and found.is_file():
+            if found.is_relative_to(within) and found.is_file():
                 return found
     except (OSError, ValueError, RuntimeError):  # a name that no file can have; links that form a loop
         raise InputError(f"the mesh {reprlib.repr(name)}", where=where, accepted=accepted) from None
-    raise InputError(f"no mesh {name} inside {folder}", where=where, accepted="meshes in the folder of the file")
+    accepted = "meshes in the folder of the file, or in a folder above it that is called as its package"
+    raise InputError(f"no mesh {name} inside {folder if package is None else package}", where=where, accepted=accepted)
+
+
+def _package(name: str, folder: Path) -> Path | None:
+    """The nearest folder of a package, by its name: that of the description, or one above it."""
+    return next((place for place in (folder, *folder.parents) if name and place.name == name), None)
 
 
 def _places(path: PurePosixPath, folder: Path) -> Iterator[Path]:

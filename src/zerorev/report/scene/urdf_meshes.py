@@ -51,7 +51,7 @@ def read_meshes(path: str | Path, robot: Robot) -> tuple[tuple[Mesh, ...], ...]:
     """Meshes of the foot and of the six links, as `arm_shapes.arm_solids` has its solids.
 
     Args:
-        path: the description (URDF); its meshes lie in its own folder, as STL, OBJ, PLY or GLB.
+        path: the description (URDF); its meshes lie in its own folder or in its package's, as STL, OBJ, PLY or GLB.
         robot: that it must describe.
 
     Raises:
