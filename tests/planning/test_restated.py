@@ -60,8 +60,8 @@ MAY_CHANGE = {
     "part_frame.xyz_mm", "part_frame.rpy_deg",
     # what only a program depends on
     "settings.lead_in_mm", "settings.feed_mm_s.retract", "settings.spindle_rpm", "settings.blend_shortfall_mm",
-    # a blend that makes no joint reverse, bounds and margins that do not bind, a wish that changes no turn and no choice, a
-    # lead-in that is kept as it is
+    # a blend that makes no joint reverse, bounds and margins that do not bind, a wish that changes no turn and no
+    # choice, a lead-in that is kept as it is
     "settings.keep_lead_in",
     "settings.blend_mm", "settings.psi_bound_deg", "settings.near_joints_deg", "settings.max_twist_deg_per_mm",
     "settings.limit_margin_deg",
