@@ -48,6 +48,24 @@ def test_a_column_more_is_left_out_and_said(capsys):
     assert "note: extra.csv: column left out, since it is not needed: dia_mm" in said
 
 
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["plan", "{}", "--proof-boxes", "0"],
+        ["depth", "{}", "--proof-boxes", "0"],
+        ["place", "{}", "--x-mm=0:1", "--grid", "2"],
+        ["share", "{}", "{}"],
+        ["rates", "{}"],
+        ["offset", "{}", "--offsets-mm", "100"],
+    ],
+    ids=lambda command: command[0],
+)
+def test_every_command_says_what_was_left_out(command, capsys):
+    job = PRACTICE / "c07_columns/extra.yaml"
+    main([part.format(job) for part in command])
+    assert "note: extra.csv: column left out, since it is not needed: dia_mm" in capsys.readouterr().err
+
+
 def test_a_header_in_capitals(capsys):
     plan, _ = planned(capsys, PRACTICE / "c07_columns/hdrcase.yaml")
     assert plan["holes"][0]["id"] == "H1"

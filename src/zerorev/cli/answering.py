@@ -47,8 +47,6 @@ def run(
         ZerorevError: as `answers` has it.
     """
     began = time.monotonic()
-    for note in job.notes:
-        terminal.note(note)
     head = unanswered(job, strokes)
     kept, tried = list[HolePlan](), TriedOtherwise(job)
     with nullcontext() if output is None else Part(output, head, job.holes) as part:

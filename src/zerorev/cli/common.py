@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter, Token
 
 from zerorev.errors import InputError, OutputError
+from zerorev.report.words import terminal
 from zerorev.workers import Machines
+
+if TYPE_CHECKING:
+    from zerorev.model.job import Job
 
 __all__ = [
     "BAD_INPUT",
@@ -23,6 +27,7 @@ __all__ = [
     "Whole",
     "app",
     "check_outputs",
+    "job_of",
     "machines",
     "map_app",
     "need",
@@ -86,6 +91,16 @@ def _whole(kind: object, tokens: Sequence[Token]) -> int:
 
 
 Whole = Annotated[int, Parameter(converter=_whole)]
+
+
+def job_of(path: Path, **how: Any) -> Job:
+    """The job of a file, as `files.io.read_job` has it; what was left out of its list of holes is noted beside."""
+    from zerorev.files.io import read_job
+
+    job = read_job(path, **how)
+    for note in job.notes:
+        terminal.note(note)
+    return job
 
 
 def check_outputs(outputs: Iterable[Path | None], *sources: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, FOUND, app
+from zerorev.cli.common import FINE, FOUND, app, job_of
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -54,7 +54,7 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
 
 def _plan(path: Path, workers: int | None) -> Plan:
     """The plan of a file, or of the job in it."""
-    from zerorev.files.io import plan_from_text, read_job
+    from zerorev.files.io import plan_from_text
     from zerorev.files.other_kinds import is_plan
     from zerorev.files.text import read_text
 
@@ -63,9 +63,7 @@ def _plan(path: Path, workers: int | None) -> Plan:
         return plan_from_text(text, str(path))
     from zerorev.planning.job import plan_job
 
-    job = read_job(path)
-    for note in job.notes:
-        terminal.note(note)
+    job = job_of(path)
     with terminal.progress(f"planning {path.name}", len(job.holes)) as progress:
         return plan_job(job, progress, workers=workers)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines
 from zerorev.cli.instead import Instead, given
 
 __all__ = ["depth"]
@@ -35,10 +35,8 @@ def depth(
         json: Print what the file holds as JSON on standard output, and nothing else there.
         instead: Of the job's settings.
     """
-    from zerorev.files.io import read_job
-
     check_outputs((output,), job)
-    wanted = read_job(job, depth_needed=False, options=given(instead))
+    wanted = job_of(job, depth_needed=False, options=given(instead))
 
     from zerorev.cli.answering import run
 

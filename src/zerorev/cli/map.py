@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, machines, map_app, need_maps
+from zerorev.cli.common import FINE, job_of, machines, map_app, need_maps
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -99,11 +99,10 @@ def _task(map: Path | None, around: Path | None, margin_mm: float | None, cell_m
                 raise InputError("a map file states its own targets", where=option, accepted="--around JOB beside it")
         assert map is not None
         return read_map_file(map)
-    from zerorev.files.io import read_job
     from zerorev.maps.around import task_around
     from zerorev.report.words.map_run import around_lines
 
-    job = read_job(around, depth_needed=False)
+    job = job_of(around, depth_needed=False)
     lengths = (None if value is None else value / 1e3 for value in (margin_mm, cell_mm))
     found = task_around(job, *lengths)
     for line in around_lines(found):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, need
+from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, job_of, need
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -47,7 +47,6 @@ def methods(
         figure: Picture to draw (PNG): box plots.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
     from zerorev.files.output import write_bytes, write_text
 
     check_outputs((output, figure), job)
@@ -55,7 +54,7 @@ def methods(
         need("matplotlib", "matplotlib", "--figure", "figures")
     if seeds < 1:
         raise InputError(f"{seeds} seeds", where="--seeds", accepted="1 or more")
-    wanted = read_job(job)
+    wanted = job_of(job)
 
     from zerorev.files.text import json_text
     from zerorev.thesis import comparison as shown

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, need, numbers
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, need, numbers
 from zerorev.report.words import terminal
 
 __all__ = ["offset"]
@@ -32,7 +32,6 @@ def offset(
         figure: Picture to draw (PNG).
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
     from zerorev.files.output import write_bytes, write_text
 
     check_outputs((output, figure), job)
@@ -40,7 +39,7 @@ def offset(
         need("matplotlib", "matplotlib", "--figure", "figures")
     offsets = [value / 1e3 for value in numbers(offsets_mm, "--offsets-mm")]
     angles = None if angles_deg is None else [math.radians(value) for value in numbers(angles_deg, "--angles-deg")]
-    wanted = read_job(job)
+    wanted = job_of(job)
 
     from zerorev.files.text import json_text
     from zerorev.placement.tool_offset import least_offset, offset_curve

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from zerorev.cli.common import FINE, Output, Whole, app, need
+from zerorev.cli.common import FINE, Output, Whole, app, job_of, need
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -54,7 +54,6 @@ def map_parameters(
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         need("plotly", "plotly", "--figures", "maps")
-    from zerorev.files.io import read_job
     from zerorev.files.output import check_folder, check_whole_folder, make_folder, write_bytes, write_text
 
     if output is not None:
@@ -63,7 +62,7 @@ def map_parameters(
         check_folder(figures)
     if not math.isfinite(psi_target_deg):
         raise InputError(f"{psi_target_deg!r}", where="--psi-target-deg", accepted="a finite angle")
-    wanted = read_job(job)
+    wanted = job_of(job)
     place = _hole(wanted, hole)
 
     from zerorev.thesis.measures import mirrored

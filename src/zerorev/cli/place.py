@@ -8,7 +8,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, machines, need
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, check_outputs, job_of, machines, need
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 from zerorev.workers import Machines
@@ -68,7 +68,6 @@ def place(
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
     from zerorev.files.output import check_folder, write_text
     from zerorev.files.text import json_text
 
@@ -78,7 +77,7 @@ def place(
         check_folder(figures)
     ranges = {"--x-mm": x_mm, "--y-mm": y_mm, "--z-mm": z_mm, "--turn-deg": turn_deg}
     ends = [_range(text, option) for option, text in ranges.items()]
-    wanted = read_job(job)
+    wanted = job_of(job)
 
     from zerorev.placement.freedom import Freedom
     from zerorev.report.words import placement as shown

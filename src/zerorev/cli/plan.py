@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines, need
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines, need
 from zerorev.cli.instead import Instead, given
 
 __all__ = ["plan"]
@@ -36,14 +36,13 @@ def plan(
         json: Print the plan as JSON on standard output, and nothing else there.
         instead: Of the job's settings.
     """
-    from zerorev.files.io import read_job
     from zerorev.files.output import check_folder
 
     check_outputs((output,), job)
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
-    wanted = read_job(job, options=given(instead))
+    wanted = job_of(job, options=given(instead))
 
     from zerorev.cli.answering import run
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from zerorev.cli.common import FINE, app
+from zerorev.cli.common import FINE, app, job_of
 from zerorev.report.words import terminal
 
 __all__ = ["rates"]
@@ -20,9 +20,7 @@ def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> 
         psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
         json: Print JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
-
-    wanted = read_job(job)
+    wanted = job_of(job)
 
     from zerorev.motion.critical import critical_at
     from zerorev.motion.drilling import Drilling

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, machines
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -37,7 +37,6 @@ def share(
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
-    from zerorev.files.io import read_job
     from zerorev.files.moved_job import write_job
     from zerorev.files.output import check_file, check_folder, make_folder, write_text
     from zerorev.files.text import json_text
@@ -52,7 +51,7 @@ def share(
             if target.exists():
                 check_file(target, *jobs)
     where = machines(workers, scheduler)
-    wanted = [read_job(job) for job in jobs]
+    wanted = [job_of(job) for job in jobs]
 
     from zerorev.placement import sharing
     from zerorev.report.words import placement as shown
