@@ -110,6 +110,24 @@ class TestPlan:
         assert names == ["P1_critical_rates.png", "P1_joint_angles.png", "P1_twist_plane.png"]
         assert "pictures" in capsys.readouterr().out
 
+    def test_figures_of_chosen_holes(self, write_job, tmp_path, capsys):
+        job = str(write_job(holes=[GIVEN, GIVEN | {"id": "P2"}, GIVEN | {"id": "a,b"}]))
+        folder = tmp_path / "pictures"
+        assert main(["plan", job, "--figures", str(folder), "--figures-of", "P2"]) == cli.FINE
+        assert sorted(file.name for file in folder.iterdir()) == [
+            "P2_critical_rates.png", "P2_joint_angles.png", "P2_twist_plane.png"
+        ]  # fmt: skip
+        assert main(["plan", job, "--figures", str(folder), "--figures-of", "a,b"]) == cli.FINE
+        assert len(list(folder.iterdir())) == 6
+        capsys.readouterr()
+        for arguments, part in (
+            (["--figures", str(folder), "--figures-of", "P1,P3"], "no hole 'P3'"),
+            (["--figures", str(folder), "--figures-of", " , "], "no id"),
+            (["--figures-of", "P1"], "--figures DIR"),
+        ):
+            assert main(["plan", job, *arguments]) == cli.BAD_INPUT
+            one_message(capsys, "--figures-of", part)
+
     @pytest.mark.parametrize(
         ("changes", "parts"),
         [

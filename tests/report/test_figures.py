@@ -28,6 +28,7 @@ from zerorev.report.figures import FIGURES, critical_rates, file_stems, joint_an
 from zerorev.report.figures.plane import SLATE
 from zerorev.report.figures.style import JOINT_COLOURS, png, signed, spread_out
 from zerorev.report.scene.bracket import broken_at_poles
+from zerorev.workers import Machines
 
 
 def texts(figure):
@@ -292,6 +293,20 @@ class TestWriteFigures:
                 image.load()
                 assert image.width == 1200
                 assert np.ptp(np.asarray(image.convert("L"))) > 200
+
+    def test_workers_make_no_difference(self, published, tmp_path):
+        here, there = (write_figures(published, tmp_path / str(count), machines=Machines(count)) for count in (1, 2))
+        assert [file.name for file in here] == [file.name for file in there]
+        for one, other in zip(here, there, strict=True):
+            assert one.read_bytes() == other.read_bytes()
+
+    def test_chosen_holes_have_the_files_that_they_have_among_all(self, published, tmp_path):
+        reported = []
+        files = write_figures(
+            published, tmp_path, lambda done, of: reported.append((done, of)), ids={"position 3", "position 1"}
+        )
+        assert [file.name for file in files] == [f"position_{n}_{name}.png" for n in (1, 3) for name in FIGURES]
+        assert reported == [(1, 2), (2, 2)]
 
     @pytest.mark.parametrize("robot_name", ["yaskawa_gp8", "staubli_tx2_90l"])
     def test_other_robots(self, robot_name, tool, tmp_path):

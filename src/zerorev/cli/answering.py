@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from contextlib import closing, nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from zerorev.files.checked_files import remember
@@ -23,11 +23,47 @@ from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown, minutes
 from zerorev.workers import Machines
 
-__all__ = ["run"]
+__all__ = ["Pictures", "run"]
+
+
+@dataclass(frozen=True)
+class Pictures:
+    """What is drawn of a plan.
+
+    Attributes:
+        figures: folder for the figures of holes; None: none.
+        of: ids of the holes that are drawn there; None: all.
+    """
+
+    figures: Path | None = None
+    of: tuple[str, ...] | None = None
+
+    def __bool__(self) -> bool:
+        return self.figures is not None
+
+    def draw(self, plan: Plan, processes: int | None) -> list[str]:
+        """Draw them.
+
+        Args:
+            plan: what was found.
+            processes: of this machine that do it.
+
+        Returns:
+            what was written, a line each.
+        """
+        written = []
+        if self.figures is not None:
+            from zerorev.report.figures import write_figures
+
+            count = len(plan.holes) if self.of is None else len(self.of)
+            with terminal.progress("drawing", count) as progress:
+                write_figures(plan, self.figures, progress, ids=self.of, machines=Machines(processes))
+            written.append(f"figures written to {self.figures}")
+        return written
 
 
 def run(
-    job: Job, strokes: Strokes, output: Path | None, machines: Machines, *, json: bool, figures: Path | None = None
+    job: Job, strokes: Strokes, output: Path | None, machines: Machines, *, json: bool, pictures: Pictures | None = None
 ) -> bool:
     """Answer a job, write and show the answers.
 
@@ -37,7 +73,7 @@ def run(
         output: where to write the plan or depth file, if anywhere.
         machines: to run it on.
         json: show what the file holds, and nothing else.
-        figures: folder for figures, if any.
+        pictures: what is drawn, if anything.
 
     Returns:
         whether every hole has a checked motion and no finding is an error.
@@ -56,7 +92,7 @@ def run(
         source = (lambda: map(as_written, kept)) if part is None else part.answers
         whole, changed = _in_sequence(job, head, source, machines)
         shown, turns = Shown(whole), ToolTurn(whole)
-        keep = figures is not None or (json and output is None)
+        keep = bool(pictures) or (json and output is None)
         holes = list[HolePlan]()
         for n, answer in enumerate(source()):
             final = changed.get(n, answer)
@@ -71,8 +107,7 @@ def run(
         remember(read_text(output, "the plan file that was just written"))
     shown.say(said)
     whole = replace(whole, holes=tuple(holes), findings=(*head.findings, *said))
-    if figures is not None:
-        _draw(whole, figures)
+    drawn = pictures.draw(whole, machines.processes) if pictures else []
     if json and output is not None:
         terminal.print_file(output)
     elif json:
@@ -82,8 +117,8 @@ def run(
         what = "plan" if strokes == "asked" else "depths"
         if output is not None:
             terminal.say(f"{what} written to {output}")
-        if figures is not None:
-            terminal.say(f"figures written to {figures}")
+        for line in drawn:
+            terminal.say(line)
         if output is None:
             terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
         # beside the answer, which is the same each time
@@ -124,10 +159,3 @@ def _answer(
             kept = f"{part.done} of {total} holes are kept in {part.path}"
             raise KeyboardInterrupt(f"interrupted; {kept}; the same command resumes") from None
         raise
-
-
-def _draw(plan: Plan, folder: Path) -> None:
-    from zerorev.report.figures import write_figures
-
-    with terminal.progress("drawing", len(plan.holes)) as progress:
-        write_figures(plan, folder, progress=progress)

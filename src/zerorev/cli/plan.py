@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines, need
 from zerorev.cli.instead import Instead, given
+from zerorev.errors import InputError
+
+if TYPE_CHECKING:
+    from zerorev.model.job import Job
 
 __all__ = ["plan"]
 
@@ -17,6 +23,7 @@ def plan(
     *,
     output: Output = None,
     figures: Path | None = None,
+    figures_of: str | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     json: bool = False,
@@ -31,7 +38,9 @@ def plan(
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
-        workers: Processes to run it on; by default all cores where the job is large enough. The plan is the same.
+        figures_of: Ids of the only holes to draw, with commas between them.
+        workers: Processes to plan and draw on; by default all cores where the job is large enough. What comes out is
+            the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
         json: Print the plan as JSON on standard output, and nothing else there.
         instead: Of the job's settings.
@@ -42,8 +51,23 @@ def plan(
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
+    if figures_of is not None and figures is None:
+        raise InputError("draws nothing without a folder", where="--figures-of", accepted="--figures DIR beside it")
     wanted = job_of(job, options=given(instead))
 
-    from zerorev.cli.answering import run
+    from zerorev.cli.answering import Pictures, run
 
-    return FINE if run(wanted, "asked", output, machines(workers, scheduler), json=json, figures=figures) else FOUND
+    pictures = Pictures(figures, None if figures_of is None else _chosen(figures_of, wanted))
+    return FINE if run(wanted, "asked", output, machines(workers, scheduler), json=json, pictures=pictures) else FOUND
+
+
+def _chosen(text: str, job: Job) -> tuple[str, ...]:
+    """The ids of a list with commas; an id that has commas itself stands alone."""
+    known = [hole.id for hole in job.holes]
+    ids = (text,) if text in known else tuple(part.strip() for part in text.split(",") if part.strip())
+    if unknown := [name for name in ids if name not in known]:
+        near = get_close_matches(unknown[0], known, n=3, cutoff=0.4) or known[:3]
+        raise InputError(f"no hole '{unknown[0]}'", where="--figures-of", accepted=f"ids of the job, e.g. {near[0]}")
+    if not ids:
+        raise InputError("no id", where="--figures-of", accepted=f"ids with commas between them, e.g. {known[0]}")
+    return ids

@@ -18,7 +18,7 @@ __all__ = ["Better", "Compared", "HolePair", "compared"]
 
 Better = Literal["first", "second", "alike"]
 
-ALIKE = 1e-6  # of what the settings ask to be least: a smaller share is no difference
+ALIKE = 1e-6  # of what the settings ask to be least: motions that differ by a smaller share are alike
 SAME_PLACE = 1e-5  # [m] in the part frame, by which one hole may differ in two plans
 SAME_WAY = 1e-5  # of a direction, likewise
 
@@ -141,7 +141,7 @@ def _cost(first: Plan, plan: Plan, hole: HolePlan, *, deep: bool) -> tuple[float
     assert hole.motion is not None
     order = Order(Drilling(plan.robot, plan.tool, hole.hole), first.settings)
     candidate = order.candidate(hole.motion.profile, hole.motion.branch)
-    if candidate is None:  # it cannot be run, whatever the file says
+    if candidate is None:  # it cannot be run, though the file states it
         return (np.inf,)
     rank = order.rank(candidate)
     deepest = (-round(hole.hole.depth / SAME_PLACE),) if deep else ()

@@ -17,7 +17,7 @@ from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.report.words.hole_rows import hole_row
 from zerorev.report.words.lost_motion import HEADING, PREDICTED, WHERE_IT_HOLDS, lost_motion_cell
-from zerorev.report.words.tables import finding_lines, hole_check, hole_findings
+from zerorev.report.words.tables import NO_BASELINE, finding_lines, hole_check, hole_findings, no_baseline
 from zerorev.visible import one_line
 
 __all__ = ["ROWS", "html_of"]
@@ -66,7 +66,8 @@ def _table(holes: Sequence[HolePlan], T_base_part: Array) -> str:
     )  # fmt: skip
     more = f"<p>and {len(holes) - ROWS:,} more</p>" if len(holes) > ROWS else ""
     said = f"<p>Lost motion: {_text(PREDICTED)}. {_text(WHERE_IT_HOLDS)}</p>" if weighed else ""
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}{said}"
+    legend = f"<p>{_text(NO_BASELINE)}</p>" if no_baseline(holes[:ROWS]) else ""
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>{more}{legend}{said}"
 
 
 def _cells(hole: HolePlan, T_base_part: Array, *, weighed: bool) -> Iterable[str]:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import html
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from zerorev.files.io import read_robot
 from zerorev.model.finding import Finding
 from zerorev.model.plan import LostMotion, Verification
+from zerorev.model.profile import Profile
+from zerorev.report.notebook import html_of
 from zerorev.report.words import tables
+from zerorev.report.words.answer import Shown
 
 
 def shown(*things):
@@ -64,6 +69,24 @@ def test_the_lost_motion_has_a_column_where_there_is_one(published):
     assert "0.067 (0.152)" in rows["position1"]
     assert "0.040 (–)" in rows["position2"]
     assert "–" in rows["position3"]
+
+
+def test_a_long_profile_shows_its_spins_at_start_target_and_end(published):
+    hole = published.holes[0]
+    standoff, psi = np.array([0.05, 0.03, 0.0, 0.02, 0.04, 0.05]), np.deg2rad([1.0, 2.0, -3.25, 4.0, 5.0, 6.5])
+    assert tables.spins_cell(Profile(standoff, psi)) == "1.00 … -3.25 … 6.50"
+    assert tables.spins_cell(hole.motion.profile) == "14.16  -5.94  -30.46"
+
+
+def test_a_baseline_that_cannot_be_run_is_explained_where_it_occurs(published):
+    lost = replace(published, holes=(replace(published.holes[0], baseline=None), *published.holes[1:]))
+    table = shown(tables.plan_table(lost))
+    assert "? → 0" in table
+    lines = [line.plain for line in Shown(lost, lost.holes).lines()]
+    assert lines[0] == tables.NO_BASELINE
+    assert tables.NO_BASELINE not in [line.plain for line in Shown(published, published.holes).lines()]
+    assert html.escape(tables.NO_BASELINE) in html_of(lost)
+    assert "cannot be run at all" not in html_of(published)
 
 
 class TestFindings:

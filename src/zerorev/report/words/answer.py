@@ -124,6 +124,8 @@ class Shown:
             kinds = ", ".join(f"{count} {status}" for status, count in sorted(self._status.items()))
             counts = ", ".join(f"{count} with {n} reversals" for n, count in sorted(self._reversals.items()))
             lines = [Text(f"{sum(self._status.values())} holes: {kinds}; {counts or 'no motion'}")]
+        elif tables.no_baseline(self._rows):
+            lines = [Text(tables.NO_BASELINE)]
         if self._worst is not None:
             lines += [Text(line) for line in self._summary(self._worst[1])]
         if self._bounded:

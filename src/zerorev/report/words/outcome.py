@@ -10,7 +10,7 @@ from zerorev.model.plan import HolePlan
 from zerorev.report.words.hole_rows import Standing, standing
 from zerorev.report.words.terminal import duration
 
-__all__ = ["outcome"]
+__all__ = ["STANDINGS", "outcome"]
 
 STANDINGS: dict[Standing, str] = {
     "zero": "without a reversal",

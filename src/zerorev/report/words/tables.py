@@ -14,13 +14,16 @@ from zerorev.files.conversion import robot_data
 from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Score, named_holes
+from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.report.words.lost_motion import HEADING, lost_motion_cell
 
 __all__ = [
+    "NO_BASELINE",
     "finding_lines",
     "hole_check",
     "hole_findings",
+    "no_baseline",
     "plan_table",
     "robot_heading",
     "robot_lines",
@@ -28,8 +31,10 @@ __all__ = [
     "robot_table",
     "robots_table",
     "slowest",
+    "spins_cell",
 ]
 
+NO_BASELINE = "? → …: with constant spin the hole cannot be run at all"
 PROOFS = {"certified": "green", "undecided": "yellow", "refuted": "bold red"}
 LEVELS = {"error": "bold red", "warning": "yellow", "info": "cyan"}
 MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding; what is left is counted
@@ -66,18 +71,29 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
         cells = ("infeasible", *"––––", _deepest(hole), *"––")
         return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
     before = "?" if hole.baseline is None else str(hole.baseline.reversals)
-    spins = "  ".join(_number(spin, 2) for spin in np.rad2deg(motion.profile.psi))
     slow = slowest(score, plan.settings)
     return [
         Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
         Text(_number(np.rad2deg(score.travel), 1)),
         Text(str(motion.branch)),
-        Text(spins),
+        Text(spins_cell(motion.profile)),
         Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
         Text(_deepest(hole)),
         Text("–" if hole.cycle_time is None else _number(hole.cycle_time, 1)),
         hole_check(hole),
     ]
+
+
+def spins_cell(profile: Profile) -> str:
+    """Spins [deg] at start, target and end; the dots between them stand for what a long profile has there."""
+    ends = [float(profile.psi[at]) for at in (0, profile.corner, -1)]
+    between = "  " if len(profile.psi) == len(ends) else " … "
+    return between.join(_number(spin, 2) for spin in np.rad2deg(ends))
+
+
+def no_baseline(holes: Iterable[HolePlan]) -> bool:
+    """Whether the reversals of some hole in a table begin with a `?`, which `NO_BASELINE` explains."""
+    return any(hole.baseline is None and hole.score is not None for hole in holes)
 
 
 def hole_check(hole: HolePlan) -> Text:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from zerorev.report.words.hole_rows import HoleRow
+from zerorev.report.words.tables import NO_BASELINE
 
 __all__ = ["options", "widths"]
 
@@ -60,7 +61,8 @@ def options(wide: Mapping[str, int]) -> dict[str, Any]:
             {"headerName": "Hole", "field": "id", "width": max(112, wide["id"]), "tooltipField": "id",
              "pinned": "left", "wrapText": wide["id"] == WIDEST, "autoHeight": wide["id"] == WIDEST},
             {"headerName": "Reversals", "field": "after", ":valueFormatter": REVERSALS, ":comparator": BY_REVERSALS,
-             "width": 92, "headerTooltip": "with constant spin → as planned", "cellClass": "zr-cell-count",
+             "width": 92, "headerTooltip": f"with constant spin → as planned; {NO_BASELINE}",
+             "cellClass": "zr-cell-count",
              "cellClassRules": {"zr-good": "data.standing === 'zero'", "zr-warn": "data.standing === 'reversals'",
                                 "zr-bad": "data.standing === 'infeasible' || data.standing === 'failed'"}},
             {**number, "headerName": "Travel [deg]", "field": "travel", ":valueFormatter": one, "width": 94},
