@@ -32,7 +32,7 @@ def refused(capsys, *command):
 @pytest.mark.parametrize(
     ("case", "code", "kinds"),
     [
-        ("c09_tool_back/tool_back.yaml", cli.FINE, {"tool_direction"}),
+        ("c09_tool_back/tool_back.yaml", cli.FOUND, {"tool_direction"}),
         ("c10_units/job_metres.yaml", cli.FINE, {"units"}),
         ("c10_units/job_opw_m.yaml", cli.FOUND, {"units"}),
         ("c10_units/job_good.yaml", cli.FINE, set()),
@@ -62,7 +62,7 @@ def test_reversed_normals_are_tried_turned_round(capsys, tmp_path):
 
 
 def test_the_cure_stands_in_the_message(capsys):
-    found, _ = warnings(capsys, PRACTICE / "c09_tool_back/tool_back.yaml")
+    found, _ = warnings(capsys, PRACTICE / "c09_tool_back/tool_back.yaml", cli.FOUND)
     assert "rpy_deg [0, -90, 0]?" in found[0]
     found, _ = warnings(capsys, PRACTICE / "c10_units/job_opw_m.yaml", cli.FOUND)
     assert any("are they in metres? geometry_mm takes millimetres" in each for each in found)

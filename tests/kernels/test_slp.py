@@ -9,7 +9,7 @@ from zerorev.kernels.layout import Constraints
 from zerorev.model.hole import Hole
 from zerorev.motion import kinematics
 from zerorev.motion.drilling import Drilling
-from zerorev.search.segments import GOALS, Legs, improved
+from zerorev.search.segments import GOALS, SegmentedLegs, improved
 
 SLOW = config.DISABLE_JIT
 NO_LIMIT = np.full(6, np.inf)
@@ -24,7 +24,7 @@ def hole_at(target=TARGET):
 
 
 def start_at(depth, spins=PSI):
-    return Legs(np.array([[0.0, depth]] * 2), np.array([[spins[0], spins[1]], [spins[0], spins[2]]]))
+    return SegmentedLegs(np.array([[0.0, depth]] * 2), np.array([[spins[0], spins[1]], [spins[0], spins[2]]]))
 
 
 def setting_out(robot, plane, posture, psi_t):

@@ -21,8 +21,8 @@ from zerorev.model.robot import JointLimits
 from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
 from zerorev.motion.criteria import (
-    Objective,
     Reversals,
+    WeighedCriteria,
     compliance,
     manipulability,
     measure,
@@ -173,7 +173,7 @@ class TestCosts:
 
     def test_is_a_weighted_sum(self, robot, tool, positions):
         figures = measured(robot, tool, positions[0])
-        mixed = Objective(((0.3, CRITERIA["plunge_rotation"]), (0.7, CRITERIA["travel"])))
+        mixed = WeighedCriteria(((0.3, CRITERIA["plunge_rotation"]), (0.7, CRITERIA["travel"])))
         by_hand = 0.3 * figures.plunge_rotation / np.pi + 0.7 * figures.travel / (12 * np.pi)
         assert mixed(figures) == pytest.approx(by_hand)
         asked = Settings(weights=(("plunge_rotation", 0.3), ("travel", 0.7)))

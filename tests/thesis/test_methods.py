@@ -15,7 +15,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
 from zerorev.search import exact
 from zerorev.thesis import methods
-from zerorev.thesis.methods import METHODS, Problem, methods_named
+from zerorev.thesis.methods import METHODS, SampledProblem, methods_named
 from zerorev.thesis.sampled import Judged
 from zerorev.thesis.trial import Trial
 
@@ -54,7 +54,7 @@ class Bowl:
 
 
 @dataclass(frozen=True)
-class Planted(Problem):
+class Planted(SampledProblem):
     """A problem with a bowl in it; all of its objectives are kept."""
 
     made: tuple = ()
@@ -111,7 +111,7 @@ class TestEveryMethod:
 class TestOnAHole:
     @pytest.fixture
     def problem(self, robot, tool, position):
-        return Problem(Drilling(robot, tool, position.hole))
+        return SampledProblem(Drilling(robot, tool, position.hole))
 
     def test_exact_is_the_exact_search_without_a_threshold(self, problem):
         outcome = METHODS["exact"].run(problem, 0, 400)

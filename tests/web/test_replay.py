@@ -14,7 +14,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import tcp_pose, wrist_offset
-from zerorev.report.scene.arm_shapes import link_frames
+from zerorev.motion.links import link_frames
 from zerorev.report.scene.cell_data import slice_data
 from zerorev.report.scene.replay import replay_page
 from zerorev.report.scene.urdf_meshes import Mesh

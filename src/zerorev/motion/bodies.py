@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.kernels.dynamics import Bodies
+from zerorev.kernels.dynamics import Bodies, about_z, place
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 
 __all__ = ["bodies_of"]
 
-AXES = ("z", "y", "y", "z", "y", "z")
+# the frames are those of the kernel; a few calls are not worth compiling it for
+_place, _about_z = (getattr(function, "py_func", function) for function in (place, about_z))
 
 
 def bodies_of(robot: Robot, tool: Tool) -> Bodies | None:
@@ -27,9 +28,8 @@ def bodies_of(robot: Robot, tool: Tool) -> Bodies | None:
     T = np.eye(4)
     mass, com, inertia = np.empty(6), np.empty((6, 3)), np.empty((6, 3, 3))
     arm = robot.arm
-    places = ((0, 0, 0), (arm.a1, 0, arm.c1), (0, arm.b, arm.c2), (arm.a2, 0, 0), (0, 0, arm.c3), (0, 0, 0))
     for i, link in enumerate(dynamics.links):
-        T = T @ _turned(AXES[i], -arm.offset[i], places[i])
+        T = T @ _turned(i, -arm.offset[i], _place(arm, i))
         to_joint = np.linalg.inv(T) @ link.T_base_link
         R = to_joint[:3, :3]
         mass[i], com[i], inertia[i] = link.mass, R @ link.com + to_joint[:3, 3], R @ link.inertia @ R.T
@@ -42,10 +42,10 @@ def bodies_of(robot: Robot, tool: Tool) -> Bodies | None:
     return Bodies(mass, com, inertia)
 
 
-def _turned(axis: str, angle: float, place: tuple[float, float, float]) -> Array:
+def _turned(i: int, angle: float, place: tuple[float, float, float]) -> Array:
     c, s = np.cos(angle), np.sin(angle)
     T = np.eye(4)
-    T[:3, :3] = [[c, -s, 0], [s, c, 0], [0, 0, 1]] if axis == "z" else [[c, 0, s], [0, 1, 0], [-s, 0, c]]
+    T[:3, :3] = [[c, -s, 0], [s, c, 0], [0, 0, 1]] if _about_z(i) else [[c, 0, s], [0, 1, 0], [-s, 0, c]]
     T[:3, 3] = place
     return T
 

@@ -27,9 +27,9 @@ from zerorev.motion.loads import lost_motion
 
 __all__ = [
     "AT_POSES",
-    "Objective",
     "Poses",
     "Reversals",
+    "WeighedCriteria",
     "compliance",
     "from_singular",
     "manipulability",
@@ -89,7 +89,7 @@ def worst(poses: Poses, names: Iterable[str] = tuple(AT_POSES)) -> dict[str, Arr
 
 
 @dataclass(frozen=True)
-class Objective:
+class WeighedCriteria:
     """A weighted sum of criteria.
 
     Attributes:
@@ -107,10 +107,10 @@ class Objective:
         return cost
 
 
-def objective_of(settings: Settings) -> Objective:
+def objective_of(settings: Settings) -> WeighedCriteria:
     """What the settings ask to be least: the weighted sum, or the one criterion that the objective names."""
     weights = settings.weights or ((settings.objective, 1.0),)
-    return Objective(tuple((weight, CRITERIA[name]) for name, weight in weights))
+    return WeighedCriteria(tuple((weight, CRITERIA[name]) for name, weight in weights))
 
 
 def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> Measures[float]:

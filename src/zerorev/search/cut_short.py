@@ -11,7 +11,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.search.rank import Candidate, Order
-from zerorev.search.segments import Goal, Legs, improved, motion_of, sense_at
+from zerorev.search.segments import Goal, SegmentedLegs, improved, motion_of, sense_at
 from zerorev.search.straight import LEAST_RATE, constraints
 
 __all__ = ["cut_short", "descended", "eased", "steadied"]
@@ -102,7 +102,7 @@ def _moved(
     if sense is None:
         return None
     psi = psi_t + depth * np.sort(slopes)[::-1, None] * np.array([[0.0, 1.0]])
-    legs = Legs(np.array([[0.0, depth]] * 2), psi)
+    legs = SegmentedLegs(np.array([[0.0, depth]] * 2), psi)
     steepest = settings.max_twist if settings.legs == "free" else np.inf
     rules = constraints(order.drilling, settings, min_rate, steepest=steepest)
     moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, samples=POINTS)

@@ -26,7 +26,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.search.free_deepest import deepest_free
 from zerorev.search.rank import Candidate
-from zerorev.search.segments import STEPS, Goal, Legs, improved, motion_of, sense_at
+from zerorev.search.segments import STEPS, Goal, SegmentedLegs, improved, motion_of, sense_at
 from zerorev.search.straight import GRID, LEAST_RATE, constraints, target_spins
 
 __all__ = ["WORTH_RAISING", "Deepest", "deepened", "deepest_of", "deepest_stroke"]
@@ -129,7 +129,7 @@ class _Start:
     """
 
     posture: int
-    legs: Legs
+    legs: SegmentedLegs
 
 
 @dataclass(frozen=True)
@@ -142,7 +142,7 @@ class _End:
         sense: signs of the outward rates of the first leg on the unflipped wrist, shape (6,).
     """
 
-    legs: Legs
+    legs: SegmentedLegs
     branch: int
     sense: Array
 
@@ -176,7 +176,7 @@ class _Search:
         """To the end of the valley in which a motion lies."""
         plunge, retract = motion.profile.twist_rate
         psi = motion.psi_target + motion.depth * np.array([[0.0, max(plunge, retract)], [0.0, min(plunge, retract)]])
-        start = _Start(motion.branch // 2, Legs(np.array([[0.0, motion.depth]] * 2), psi))
+        start = _Start(motion.branch // 2, SegmentedLegs(np.array([[0.0, motion.depth]] * 2), psi))
         return self._deepest(self._deepened(start, 0.0))
 
     def _deepest(self, ends: list[_End]) -> Deepest:
@@ -241,7 +241,7 @@ class _Search:
         starts = []
         for posture, n in sorted(np.argwhere(peaks).tolist(), key=lambda peak: (-margin[*peak], peak)):
             psi = self.psi[n] + depth * np.append(0.0, found[posture, n, pairs.SLOPES_SAMPLED :])
-            starts.append(_Start(posture, Legs(np.array([[0.0, depth]] * 2), psi[[[0, 1], [0, 2]]])))
+            starts.append(_Start(posture, SegmentedLegs(np.array([[0.0, depth]] * 2), psi[[[0, 1], [0, 2]]])))
         return starts
 
     def _deepened(self, start: _Start, beaten: float) -> list[_End]:
@@ -274,9 +274,9 @@ class _Search:
         return ends
 
     def _go(
-        self, branch: int, sense: Array, rules: Constraints, legs: Legs, goal: Goal, samples: int, *,
+        self, branch: int, sense: Array, rules: Constraints, legs: SegmentedLegs, goal: Goal, samples: int, *,
         steps: int = STEPS, enough: float = ENOUGH, weighed: bool = False,
-    ) -> tuple[Legs, float]:  # fmt: skip
+    ) -> tuple[SegmentedLegs, float]:  # fmt: skip
         return improved(
             self.arm, self.plane, branch, sense, rules, legs, goal,
             samples=samples, steps=steps, enough=enough, weighed=weighed,
@@ -297,6 +297,6 @@ class _Search:
         return None
 
 
-def _shortened(legs: Legs, share: float) -> Legs:
+def _shortened(legs: SegmentedLegs, share: float) -> SegmentedLegs:
     """The inner part of two legs."""
-    return Legs(legs.standoff * share, legs.psi[:, :1] + share * (legs.psi - legs.psi[:, :1]))
+    return SegmentedLegs(legs.standoff * share, legs.psi[:, :1] + share * (legs.psi - legs.psi[:, :1]))

@@ -26,7 +26,7 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
-from zerorev.search.segments import Legs, breakpoints_of, motion_of
+from zerorev.search.segments import SegmentedLegs, breakpoints_of, motion_of
 from zerorev.search.straight import constraints
 from zerorev.search.viable import MOST_ROWS, ROWS, ROWS_SLACK, Family, Grain, Pair, Viable
 
@@ -130,7 +130,7 @@ class _Search:
         )
         branches = np.array([drilling.hole.branch in (None, branch) for branch in range(8)])
         self.viable = Viable(robot.arm, drilling.plane, self.constraints, branches, robot.reach, effort.rows)
-        self.beyond: Legs | None = None  # what passed a limit last
+        self.beyond: SegmentedLegs | None = None  # what passed a limit last
         self.shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, kernels.SAMPLES))
 
     def best(self, pairs: list[Pair], enough: float) -> Deepest:
@@ -213,7 +213,7 @@ class _Search:
                     return None
         return None
 
-    def within_turns(self, pair: Pair, legs: Legs) -> Profile | None:
+    def within_turns(self, pair: Pair, legs: SegmentedLegs) -> Profile | None:
         """The deepest motion with the turns at the target that fit legs best which pass a limit.
 
         Only of joints that can turn more than once round: of the others the turns are known.
@@ -277,7 +277,7 @@ class _Search:
         )  # fmt: skip
         return float(wide), spins
 
-    def legs(self, pair: Pair, guarded: Constraints, grain: Grain, part: Array, depth: float) -> Legs | None:
+    def legs(self, pair: Pair, guarded: Constraints, grain: Grain, part: Array, depth: float) -> SegmentedLegs | None:
         """Two legs of a depth, through the middle of what is viable."""
         wide, spins = self.width(pair, guarded, grain, part, depth)
         if wide < 0:
@@ -290,9 +290,9 @@ class _Search:
                 self.shares, sets.room[0], spins[k], psi[k],
             ):  # fmt: skip
                 return None
-        return Legs(part * depth, psi)
+        return SegmentedLegs(part * depth, psi)
 
-    def accepted(self, pair: Pair, legs: Legs) -> Profile | None:
+    def accepted(self, pair: Pair, legs: SegmentedLegs) -> Profile | None:
         """The motion of two legs, if it has no reversal and keeps the threshold."""
         profile = motion_of(legs, periodic=self.settings.psi_bound is None)
         seen = evaluated(self.drilling.deep(legs.depth), profile, pair.branch, self.settings)

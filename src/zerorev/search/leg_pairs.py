@@ -28,7 +28,7 @@ from zerorev.motion.joint_path import JUMP, turns_within
 from zerorev.motion.loads import leg_gives, pair_lost_motion
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK, steepest_twist
 
-__all__ = ["FINE_NODES", "NODES", "LegPairs", "Legs", "Point", "Sides", "turns_round"]
+__all__ = ["FINE_NODES", "NODES", "LegPairs", "LegRows", "Point", "Sides", "turns_round"]
 
 CLOSER_SLOPES = 6  # around the greatest margin
 NODES, FINE_NODES = 25, 97  # points on a leg; odd, for Simpson's rule
@@ -68,7 +68,7 @@ class Sides(NamedTuple):
     room: Array
 
 
-class Legs(NamedTuple):
+class LegRows(NamedTuple):
     """Admissible legs, in order of their rows, and what they are worth; shape (n,), extents (n, 6).
 
     `at_poses` has a column for each criterion of a pose (`zerorev.motion.criteria.AT_POSES`), NaN where it does not
@@ -85,11 +85,11 @@ class Legs(NamedTuple):
     at_poses: Array
     gives: Array
 
-    def of(self, chosen: Mask | slice) -> Legs:
+    def of(self, chosen: Mask | slice) -> LegRows:
         """Some of them."""
-        return Legs(self.row[chosen], *(values[chosen] for values in self[1:]))
+        return LegRows(self.row[chosen], *(values[chosen] for values in self[1:]))
 
-    def flipped(self) -> Legs:
+    def flipped(self) -> LegRows:
         """The same legs on the other wrist flip: joints 4 and 6 half a turn on, joint 5 with the other sign.
 
         What the gears do is left as it was: the links of the wrist weigh little.
@@ -197,7 +197,7 @@ class LegPairs:
             good, bad = np.where(fits, middle, good), np.where(fits, bad, middle)
         return np.concatenate([np.nonzero(admissible)[0], row]), np.concatenate([slopes[admissible], good])
 
-    def followed(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> Legs:
+    def followed(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> LegRows:
         """Admissible legs, with all that the criteria take of them; those that jump are left out.
 
         The margin is taken from the nodes asked for; all else varies slowly and is taken from NODES.
@@ -215,7 +215,7 @@ class LegPairs:
         figures, unweighed = worst(Poses(self.drilling, self.settings, joints), weighed), np.full(row.shape, np.nan)
         at_poses = np.stack([figures.get(name, unweighed) for name in AT_POSES], axis=-1)
         travel = steps.sum(axis=(1, 2))
-        legs = Legs(
+        legs = LegRows(
             row, slope, margin, travel, joints.min(axis=1), joints.max(axis=1), at_poses, self._gives(sides, row, slope)
         )
         return legs.of(steps.max(axis=(1, 2)) < JUMP)
@@ -225,7 +225,7 @@ class LegPairs:
             return np.empty((row.size, 0))
         return leg_gives(self.drilling, sides.branch, sides.psi_t[row], slope, self.settings.thrust)
 
-    def paired(self, legs: Legs, other: Legs) -> Array:
+    def paired(self, legs: LegRows, other: LegRows) -> Array:
         """What all pairs of legs out of one spin cost, shape (n, m); inf beyond the limits."""
         low = np.minimum(legs.low[:, None], other.low)
         high = np.maximum(legs.high[:, None], other.high)
@@ -247,7 +247,7 @@ class LegPairs:
         )
         return np.where(fits.all(axis=-1), objective_of(self.settings)(measures), np.inf)
 
-    def best_pairs(self, sides: Sides, legs: Legs) -> Iterator[Point]:
+    def best_pairs(self, sides: Sides, legs: LegRows) -> Iterator[Point]:
         """The best pair of each spin that has one; rows 2k and 2k + 1 are the two sides of spin k."""
         ends = np.searchsorted(legs.row, np.arange(len(sides.psi_t) + 1))
         for row in range(0, len(sides.psi_t), 2):

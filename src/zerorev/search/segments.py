@@ -15,7 +15,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.profile import Profile
 from zerorev.model.robot import ArmGeometry
 
-__all__ = ["Goal", "Legs", "breakpoints_of", "improved", "legs_through", "motion_of", "sense_at"]
+__all__ = ["Goal", "SegmentedLegs", "breakpoints_of", "improved", "legs_through", "motion_of", "sense_at"]
 
 Goal = Literal["depth", "travel", "margin", "plunge_rotation"]
 GOALS: dict[Goal, int] = {
@@ -29,7 +29,7 @@ BENT = 400  # points at which it is asked how much a leg bends, at least
 
 
 @dataclass(frozen=True)
-class Legs:
+class SegmentedLegs:
     """Two legs of K segments each out of one point of the target line, on either side of the critical rates.
 
     Attributes:
@@ -46,7 +46,7 @@ class Legs:
         return float(self.standoff[0, -1])
 
 
-def legs_through(tubes: list[Array], narrowed: list[Array], segments: int) -> Legs:
+def legs_through(tubes: list[Array], narrowed: list[Array], segments: int) -> SegmentedLegs:
     """Two legs through the middles of narrowed tubes.
 
     Args:
@@ -60,10 +60,10 @@ def legs_through(tubes: list[Array], narrowed: list[Array], segments: int) -> Le
         kernels.place_knots(tube, len(tube), viable, knots)
         standoff[k], psi[k] = tube[knots, 0], viable[knots].mean(axis=1)
     psi[:, 0] = psi[:, 0].mean()
-    return Legs(standoff, psi)
+    return SegmentedLegs(standoff, psi)
 
 
-def motion_of(legs: Legs, *, periodic: bool) -> Profile:
+def motion_of(legs: SegmentedLegs, *, periodic: bool) -> Profile:
     """The motion of two legs; of the two twins the one that turns the tool less while it cuts (theory §2).
 
     Args:
@@ -84,14 +84,14 @@ def improved(
     branch: int,
     sense: Array,
     rules: Constraints,
-    legs: Legs,
+    legs: SegmentedLegs,
     goal: Goal,
     *,
     samples: int = 9,
     steps: int = STEPS,
     enough: float = ENOUGH,
     weighed: bool = False,
-) -> tuple[Legs, float]:
+) -> tuple[SegmentedLegs, float]:
     """The best legs that small steps reach from these, and by how much they violate the constraints.
 
     Args:
@@ -115,7 +115,7 @@ def improved(
     standoff, psi = legs.standoff.copy(), legs.psi.copy()
     shares = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, samples))
     lack = slp.better(arm, plane, branch, sense, rules, GOALS[goal], shares, steps, enough, weighed, standoff, psi)
-    return Legs(standoff, psi), float(lack)
+    return SegmentedLegs(standoff, psi), float(lack)
 
 
 def sense_at(arm: ArmGeometry, plane: TwistPlane, posture: int, psi_t: float) -> Array | None:

@@ -20,7 +20,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
-from zerorev.thesis.methods import BUDGET, Method, Outcome, Problem, methods_named
+from zerorev.thesis.methods import BUDGET, Method, Outcome, SampledProblem, methods_named
 from zerorev.thesis.sampled import SAMPLES, even_fractions
 
 __all__ = ["Comparison", "Rescored", "Summary", "compare", "comparison", "runs", "wilson"]
@@ -141,9 +141,9 @@ class Comparison:
         """The seeds that a method runs with."""
         return self.seeds if self.methods[method].random else (None,)
 
-    def problem(self, hole: Hole) -> Problem:
+    def problem(self, hole: Hole) -> SampledProblem:
         """What the methods are given."""
-        return Problem(Drilling.of(self.job, hole), self.bound, samples=self.samples, crowded=self.crowded)
+        return SampledProblem(Drilling.of(self.job, hole), self.bound, samples=self.samples, crowded=self.crowded)
 
     @property
     def bound(self) -> float:
@@ -252,7 +252,9 @@ def runs(asked: Comparison) -> Iterator[Rescored]:
                 yield _rescored(problem, name, seed, outcome, time.perf_counter() - began)
 
 
-def _rescored(problem: Problem, method: str, seed: int | None, outcome: Outcome | None, seconds: float) -> Rescored:
+def _rescored(
+    problem: SampledProblem, method: str, seed: int | None, outcome: Outcome | None, seconds: float
+) -> Rescored:
     hole = problem.drilling.hole
     if outcome is None:
         return Rescored(hole.id, method, seed, None, WORST, None, None, seconds)

@@ -24,13 +24,13 @@ from zerorev.thesis.sampled import SAMPLES, THESIS, SampledObjective, Weighing, 
 from zerorev.thesis.swarm import TABLE_3, TABLE_4, SwarmSettings, run_swarm
 from zerorev.thesis.trial import Algorithm, Trial
 
-__all__ = ["BUDGET", "METHODS", "Method", "Outcome", "Problem", "methods_named"]
+__all__ = ["BUDGET", "METHODS", "Method", "Outcome", "SampledProblem", "methods_named"]
 
 BUDGET = 100 * 51  # evaluations: the thesis' 100 particles, where they begin and after each of 50 iterations
 
 
 @dataclass(frozen=True)
-class Problem:
+class SampledProblem:
     """A hole, and what is to be least there: eq. 4.7 of the motion's samples, on the best of the branches.
 
     Attributes:
@@ -74,7 +74,7 @@ class Outcome:
     first_zero: int | None
 
 
-Run = Callable[[Problem, int, int], Outcome | None]
+Run = Callable[[SampledProblem, int, int], Outcome | None]
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Method:
     needs: str = ""
 
 
-def _exact(problem: Problem, seed: int, budget: int) -> Outcome | None:
+def _exact(problem: SampledProblem, seed: int, budget: int) -> Outcome | None:
     del seed, budget
     weighing = problem.weighing
     settings = Settings(weighing.min_rate, weighing.min_rate_rule, problem.bound)
@@ -102,20 +102,20 @@ def _exact(problem: Problem, seed: int, budget: int) -> Outcome | None:
     return None if found is None else replace(_outcome(problem, found.profile.psi), branch=found.branch)
 
 
-def _swarm(swarm: SwarmSettings, problem: Problem, seed: int, budget: int) -> Outcome:
+def _swarm(swarm: SwarmSettings, problem: SampledProblem, seed: int, budget: int) -> Outcome:
     objective, bound = problem.objective(), problem.bound
     iterations = min(swarm.iterations, budget // swarm.particles - 1)
     found = run_swarm(objective, replace(swarm, iterations=iterations, seed=seed, bounds=(-bound, bound)))
     return Outcome(found.spins, found.branch, found.score, found.reversals, found.evaluations, objective.first_zero)
 
 
-def _sampled(algorithm: Algorithm, problem: Problem, seed: int, budget: int) -> Outcome:
+def _sampled(algorithm: Algorithm, problem: SampledProblem, seed: int, budget: int) -> Outcome:
     objective, box = problem.objective(), np.full(3, problem.bound)
     trial = Trial(objective, budget, -box, box).run(algorithm, seed)
     return _outcome(problem, trial.best, budget - trial.left, objective.first_zero)
 
 
-def _outcome(problem: Problem, spins: Array, evaluations: int = 0, first_zero: int | None = None) -> Outcome:
+def _outcome(problem: SampledProblem, spins: Array, evaluations: int = 0, first_zero: int | None = None) -> Outcome:
     judged = problem.objective().judged(spins[None])
     score, branch, reversals = (each[0].item() for each in judged)
     return Outcome(spins, branch, score, reversals, evaluations, first_zero)

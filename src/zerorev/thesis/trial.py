@@ -15,10 +15,10 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 
-__all__ = ["Algorithm", "Objective", "Trial"]
+__all__ = ["Algorithm", "Scoring", "Trial"]
 
 
-class Objective(Protocol):
+class Scoring(Protocol):
     """What is to be least: scores of motions given by (psi_start, psi_target, psi_end) [rad], (M, 3) -> (M,)."""
 
     def __call__(self, spins: Array, /) -> Array:
@@ -41,7 +41,7 @@ class Trial:
         left: evaluations that the budget still holds.
     """
 
-    def __init__(self, objective: Objective, budget: int, low: Array, high: Array) -> None:
+    def __init__(self, objective: Scoring, budget: int, low: Array, high: Array) -> None:
         self.objective, self.left, self.low, self.high = objective, budget, low, high
         self.best, self.score = np.full(3, np.nan), np.inf
 

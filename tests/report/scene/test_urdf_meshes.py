@@ -8,7 +8,7 @@ import pytest
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import rotation_rpy, rpy_of
-from zerorev.report.scene.arm_shapes import chain, link_frames
+from zerorev.motion.links import chain, link_frames
 
 pytest.importorskip("defusedxml", reason="descriptions need defusedxml (pip install 'zerorev[view]')")
 trimesh = pytest.importorskip("trimesh", reason="meshes need trimesh (pip install 'zerorev[view]')")

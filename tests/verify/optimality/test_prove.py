@@ -24,7 +24,7 @@ from flint import arb
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.optimality.arm import arm_of, directions, rates_at, root_of
 from zerorev.verify.optimality.box import Box, Examiner, denominators
-from zerorev.verify.optimality.legs import MID_SHARES, Legs
+from zerorev.verify.optimality.legs import MID_SHARES, BoxLegs
 from zerorev.verify.optimality.prove import check_tree
 
 RATE = float(np.deg2rad(10.0))  # 0.01 deg/mm
@@ -96,7 +96,7 @@ def check_a_box(rng, drilled):
     min_rate, posture = float(rng.choice([0.0, RATE])), int(rng.integers(4))
     claim = Claim(hole.depth, min_rate, 0.0, None, np.ones(6), 60.0, NO_VALUE)
     with ball_arithmetic():
-        legs = Legs(Examiner(robot, tool, hole, claim, posture), box, MID_SHARES)
+        legs = BoxLegs(Examiner(robot, tool, hole, claim, posture), box, MID_SHARES)
         while legs.sample_closer():
             pass
     run = 0

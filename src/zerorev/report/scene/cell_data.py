@@ -21,7 +21,8 @@ from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
 from zerorev.motion.kinematics import tcp_pose
-from zerorev.report.scene.arm_shapes import Solid, arm_solids, chain, rings, tool_solids
+from zerorev.motion.links import chain
+from zerorev.report.scene.arm_shapes import Solid, arm_solids, rings, tool_solids
 from zerorev.report.scene.motion_look import Mark, held, look, signed_distance
 from zerorev.report.scene.palette import BASELINE_COLOUR, CANNOT_RUN, JOINT_COLOURS, REVERSAL_COLOURS
 from zerorev.report.scene.skeleton import home

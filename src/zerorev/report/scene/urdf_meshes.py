@@ -19,7 +19,7 @@ from zerorev.files.text import read_bytes
 from zerorev.files.urdf import Description, Joint, Visual, read_urdf
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
-from zerorev.report.scene.arm_shapes import chain, link_frames
+from zerorev.motion.links import chain, link_frames
 
 __all__ = ["Mesh", "read_meshes"]
 
@@ -34,7 +34,7 @@ QUARTERS = (0.0, np.pi / 2, -np.pi / 2, np.pi)  # offsets of a joint that are lo
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles in a link frame of `arm_shapes`.
+    """Triangles in a link frame (`zerorev.motion.links`).
 
     Attributes:
         vertices: [m], shape (N, 3).

@@ -16,7 +16,7 @@ from flint import arb
 from zerorev.verify.optimality.box import SIX, Box, Examiner, Extent, Look, denominators, smooth_denominators
 from zerorev.verify.optimality.travel import ANY_TURN, Turns, travel_of
 
-__all__ = ["MID_SHARES", "Legs"]
+__all__ = ["MID_SHARES", "BoxLegs"]
 
 SHARES = tuple(0.5 - 0.5 * float(np.cos(np.pi * j / 7)) for j in range(8))  # of the depth; both ends exactly
 MID_SHARES = tuple(0.5 - 0.5 * float(np.cos(np.pi * (j + 0.5) / 8)) for j in range(8))
@@ -26,7 +26,7 @@ CHUNK = 4  # stand-offs that are examined before the box is judged again
 NEVER = 100  # reversals that no joint makes
 
 
-class Legs:
+class BoxLegs:
     """The legs of a box: what they have in common, as far as it has been examined.
 
     Args:

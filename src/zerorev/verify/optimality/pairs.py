@@ -14,7 +14,7 @@ from flint import arb
 
 from zerorev.model.proof_tree import PER_REVERSAL
 from zerorev.verify.optimality.box import AROUND, SIX
-from zerorev.verify.optimality.legs import Legs
+from zerorev.verify.optimality.legs import BoxLegs
 from zerorev.verify.optimality.travel import Turns
 
 __all__ = ["Term", "Weights", "least_value", "weights_of"]
@@ -57,7 +57,7 @@ def weights_of(terms: np.ndarray, of_travel: bool) -> Weights:
     return Weights(tuple(Term(int(leg), int(joint), *rest) for leg, joint, *rest in sound), of_travel)
 
 
-def least_value(one: Legs, other: Legs, weights: Weights) -> arb | None:
+def least_value(one: BoxLegs, other: BoxLegs, weights: Weights) -> arb | None:
     """A lower bound of what any two legs of two boxes cost and travel; None where no two keep the rules."""
     if one.dead is not None or other.dead is not None:
         return None
@@ -82,12 +82,12 @@ def least_value(one: Legs, other: Legs, weights: Weights) -> arb | None:
     return travel + costs
 
 
-def _half(legs: Legs) -> arb:
+def _half(legs: BoxLegs) -> arb:
     box = legs.box
     return (arb(box.high) - arb(box.low)) / 2 + AROUND
 
 
-def _hold(weights: Weights, turns: list[int], first: Legs, second: Legs) -> bool:
+def _hold(weights: Weights, turns: list[int], first: BoxLegs, second: BoxLegs) -> bool:
     """Whether each joint of the terms goes as these say on all motions of two boxes that do not reverse it."""
     for term in weights.terms:
         i, forth = term.joint, (term.direction > 0) == (term.leg == 0)  # forth: on the first leg; it comes back then
@@ -97,7 +97,7 @@ def _hold(weights: Weights, turns: list[int], first: Legs, second: Legs) -> bool
     return True
 
 
-def _weighed(weights: Weights, first: Legs, second: Legs) -> arb:
+def _weighed(weights: Weights, first: BoxLegs, second: BoxLegs) -> arb:
     """The travel of two legs, if it counts, less the weighted conditions."""
     legs = first, second
     least, by_psi, by_slope = arb(0), arb(0), [arb(0), arb(0)]
@@ -115,7 +115,7 @@ def _weighed(weights: Weights, first: Legs, second: Legs) -> arb:
     return arb((least - by_psi.abs_upper() * _half(first) - varies).lower())
 
 
-def _turns(one: Legs, other: Legs) -> list[int]:
+def _turns(one: BoxLegs, other: BoxLegs) -> list[int]:
     """Least reversals of each joint on a motion of two legs."""
     turns = []
     for i in SIX:

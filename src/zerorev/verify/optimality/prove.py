@@ -25,7 +25,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.optimality.box import Box, Examiner
-from zerorev.verify.optimality.legs import MID_SHARES, Legs
+from zerorev.verify.optimality.legs import MID_SHARES, BoxLegs
 from zerorev.verify.optimality.pairs import Weights, least_value, weights_of
 from zerorev.verify.optimality.tree import Node, fits, holes_in, most_reversals, node_of
 
@@ -102,7 +102,7 @@ class _Check:
         ends = np.searchsorted(tree.closed_of[order], np.arange(count + 1))
         self.rows: list[Indices] = [order[a:b] for a, b in pairwise(ends.tolist())]
         self.value = arb(tree.claim.value)
-        self.legs: dict[Box, Legs] = {}
+        self.legs: dict[Box, BoxLegs] = {}
 
     def run(self, sample: int | None, seed: int) -> ProofCheck:
         """The structure, then the boxes."""
@@ -209,30 +209,30 @@ class _Check:
         """Of the legs [m]."""
         return self.tree.claim.depth
 
-    def legs_of(self, number: int, box: Box) -> Legs:
+    def legs_of(self, number: int, box: Box) -> BoxLegs:
         """The legs of a box on a node."""
         self.parts += 1
         wide, more = box.high - box.low, self.tree.cuts[number].tolist()
         more += [*(MID_SHARES if wide < FINE else ()), *(DENSE if wide < FINEST else ())]
-        return Legs(self.of[int(self.tree.postures[number])], box, more)
+        return BoxLegs(self.of[int(self.tree.postures[number])], box, more)
 
-    def kept(self, number: int, box: Box) -> Legs:
+    def kept(self, number: int, box: Box) -> BoxLegs:
         """The same, kept for the pairs of a node."""
         found = self.legs.get(box)
         if found is None:
             found = self.legs[box] = self.legs_of(number, box)
         return found
 
-    def middle(self, number: int, box: Box) -> Legs:
+    def middle(self, number: int, box: Box) -> BoxLegs:
         """The leg in the middle of a box, examined densely."""
         psi, slope = 0.5 * (box.low + box.high), 0.5 * (box.least + box.most)
         more = [*self.tree.cuts[number].tolist(), *MID_SHARES, *DENSE]
-        legs = Legs(self.of[int(self.tree.postures[number])], Box(psi, psi, slope, slope), more)
+        legs = BoxLegs(self.of[int(self.tree.postures[number])], Box(psi, psi, slope, slope), more)
         while legs.sample_closer():
             pass
         return legs
 
-    def reached(self, one: Legs, other: Legs, weights: Weights) -> bool:
+    def reached(self, one: BoxLegs, other: BoxLegs, weights: Weights) -> bool:
         """Whether any two legs of two boxes surely reach the value; the boxes are examined as far as that takes."""
         while True:
             value = least_value(one, other, weights)
@@ -241,7 +241,7 @@ class _Check:
             if not (one.sample_closer() | other.sample_closer()):
                 return False
 
-    def below(self, one: Legs, other: Legs) -> bool:
+    def below(self, one: BoxLegs, other: BoxLegs) -> bool:
         """Whether the least value of two legs is surely below the one that is claimed."""
         value = least_value(one, other, Weights())
         return value is not None and bool(value < self.value)
