@@ -46,6 +46,7 @@ FindingKind = Literal[
     "program_size",
     "rejected",
     "resampled",
+    "retract",
     "reversal",
     "rows_dropped",
     "sampling",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from zerorev.model.finding import Finding
 from zerorev.model.written import Word, WrittenProgram
 from zerorev.program.neutral import Program
+from zerorev.program.retract import Retract
 
 __all__ = ["Dialect", "ProgramFile"]
 
@@ -40,6 +41,7 @@ class Dialect:
         read: what `write` has written, the file that is started first; raises `InputError` at a statement of another
             form than `write` writes, for it might move the robot in a way that nobody has examined.
         parts: of the file that is started -> the names of the others, in order.
+        retract: (way out of a hole, name, version of zerorev) -> the file of a program.
     """
 
     name: str
@@ -50,4 +52,5 @@ class Dialect:
     check_robot: Callable[[str, str], None]
     write: Callable[[Program, str, tuple[Finding, ...], str | None], tuple[ProgramFile, ...]]
     read: Callable[[Sequence[ProgramFile]], WrittenProgram]
-    parts: Callable[[ProgramFile], tuple[str, ...]] = lambda file: ()
+    parts: Callable[[ProgramFile], tuple[str, ...]]
+    retract: Callable[[Retract, str, str], ProgramFile]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Collection, Generator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from importlib.metadata import version as installed_version
+from typing import TypeVar
 
 from zerorev.errors import NotExportableError
 from zerorev.model.finding import Finding
@@ -13,10 +15,14 @@ from zerorev.program.dialect import ProgramFile
 from zerorev.program.dialects import dialect_called
 from zerorev.program.neutral import build_program
 from zerorev.program.preflight import preflight
+from zerorev.program.retract import retract_of
+from zerorev.program.selection import number_of, selection
 from zerorev.verify.check import subject, verify_hole
 from zerorev.workers import Machines, Workers
 
-__all__ = ["Exported", "export", "exporting"]
+__all__ = ["Exported", "export", "exporting", "retract_name", "retract_program"]
+
+T = TypeVar("T")
 
 LONG, LARGE = 5_000, 4_000_000  # lines, bytes of one file
 
@@ -51,6 +57,8 @@ def export(
     name: str | None = None,
     plan_file: str = "",
     holes_per_program: int | None = None,
+    start: str | None = None,
+    only: Sequence[str] | None = None,
     version: str | None = None,
     workers: int | None = 1,
     progress: Callable[[int, int], None] | None = None,
@@ -68,12 +76,14 @@ def export(
         plan_file: name of the file that the plan is in; it stands in the program, so that the next export of the plan
             may replace it.
         holes_per_program: most holes of one file, in place of the plan's own setting.
+        start: id of the hole with which the program begins, in the order in which they are drilled; None: the first.
+        only: ids of the holes that are wanted, drilled in their order; None: all.
         version: of zerorev, for the comment block; by default the installed one.
         workers: processes that check the holes; the program is the same.
         progress: called with (holes checked, holes in all) before the first and after each.
 
     Raises:
-        InputError: unknown controller.
+        InputError: unknown controller; a hole that the plan does not have.
         NotExportableError: the robot is another maker's, a hole has no verified motion, or the preflight found an
             error.
     """
@@ -84,18 +94,24 @@ def export(
         name=name,
         plan_file=plan_file,
         holes_per_program=holes_per_program,
+        start=start,
+        only=only,
         version=version,
         workers=workers,
     )
+    return _finished(steps, lambda checked: progress(checked, len(plan.holes)) if progress else None)
+
+
+def _finished(steps: Generator[None, None, T], reached: Callable[[int], object] = lambda checked: None) -> T:
+    """What steps come to; called with how many are made, before the first and after each."""
     checked = 0
     while True:
-        if progress:
-            progress(checked, len(plan.holes))
+        reached(checked)
         try:
             next(steps)
         except StopIteration as end:
-            exported: Exported = end.value
-            return exported
+            found: T = end.value
+            return found
         checked += 1
 
 
@@ -107,19 +123,26 @@ def exporting(
     name: str | None = None,
     plan_file: str = "",
     holes_per_program: int | None = None,
+    start: str | None = None,
+    only: Sequence[str] | None = None,
     version: str | None = None,
     workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
     dialect = dialect_called(controller)
     dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
-    verified = yield from _verified(plan, workers)
-    program = build_program(verified, skip_failed=skip_failed, plan_file=plan_file)
-    program = replace(program, parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program))
+    wanted = selection(plan, start, only)
+    verified = yield from _verified(plan, workers, wanted.ids)
+    program = build_program(verified, skip_failed=skip_failed, only=wanted.ids, plan_file=plan_file)
+    program = replace(
+        program,
+        findings=(*wanted.findings, *program.findings),
+        parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program),
+    )
     findings = preflight(program, plan)
     if errors := [finding for finding in findings if finding.level == "error"]:
         raise NotExportableError(tuple(_sentence(finding) for finding in errors))
-    called = dialect.program_name(name or plan.name)
+    called = dialect.program_name(name or wanted.name)
     files = dialect.write(program, called, findings, version)
     return Exported(files, (*findings, *_sizes(files)), called, len(program.holes))
 
@@ -145,23 +168,69 @@ def _sizes(files: tuple[ProgramFile, ...]) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _verified(plan: Plan, workers: int | None) -> Generator[None, None, Plan]:
+def retract_program(
+    plan: Plan,
+    hole_id: str,
+    controller: str = "krl",
+    *,
+    name: str | None = None,
+    plan_file: str = "",
+    version: str | None = None,
+) -> Exported:
+    """A program that brings the drill out of a hole in which the robot has stopped, from wherever it stands.
+
+    Args:
+        plan: whose hole it is.
+        hole_id: of the hole.
+        controller: one of `DIALECTS`.
+        name: of the program; by default the plan's, and which hole.
+        plan_file: see `export`.
+        version: of zerorev, for the comment block; by default the installed one.
+
+    Raises:
+        InputError: unknown controller; a hole that the plan does not have.
+        NotExportableError: the robot is another maker's, the hole has no verified motion, or the drill cannot be
+            brought out straight.
+    """
+    dialect = dialect_called(controller)
+    dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
+    called = dialect.program_name(name or retract_name(plan, hole_id))
+    number_of(plan, hole_id, "retract")
+    way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)
+    file = dialect.retract(way, called, version or installed_version("zerorev"))
+    return Exported((file,), way.findings, called, 1)
+
+
+def retract_name(plan: Plan, hole_id: str) -> str:
+    """What a retract program is called after.
+
+    Raises:
+        InputError: a hole that the plan does not have.
+    """
+    return f"{plan.name}_out_{number_of(plan, hole_id, 'retract')}"
+
+
+def _verified(plan: Plan, workers: int | None, ids: Collection[str] | None = None) -> Generator[None, None, Plan]:
     """The plan with each hole that passed its check held to it again, unless this very hole was checked before.
+
+    Holes that are not wanted are left as they are.
 
     A plan file may have been altered since; a hole that was replaced in memory has another fingerprint.
     """
     holes = []
     with Workers(partial(verify_hole, plan.robot, plan.tool, plan.settings), Machines(workers)) as checkers:
-        left = [hole for hole in plan.holes if _is_open(plan, hole)]
+        left = [hole for hole in plan.holes if _is_open(plan, hole, ids)]
         outcomes = checkers.map(left, len(left))
         for hole in plan.holes:
-            holes.append(replace(hole, verified=next(outcomes)) if _is_open(plan, hole) else hole)
+            holes.append(replace(hole, verified=next(outcomes)) if _is_open(plan, hole, ids) else hole)
             yield
     return replace(plan, holes=tuple(holes))
 
 
-def _is_open(plan: Plan, hole: HolePlan) -> bool:
-    """Whether a hole is said to have passed, but not known to."""
+def _is_open(plan: Plan, hole: HolePlan, ids: Collection[str] | None) -> bool:
+    """Whether a hole that is wanted is said to have passed, but not known to."""
+    if ids is not None and hole.hole.id not in ids:
+        return False
     if hole.verified is None or not hole.verified.passed:
         return False
     return hole.verified.subject != subject(plan.robot, plan.tool, plan.settings, hole)

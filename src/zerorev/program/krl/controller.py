@@ -16,8 +16,8 @@ from zerorev.program.krl.text import aggregate, degrees, fixed, frame_angles
 from zerorev.program.neutral import Program
 
 __all__ = [
-    "AT_REST", "AXIS_DECIMALS", "axis_target", "called", "frame", "frames_and_load", "header", "not_set",
-    "refuse_calls",
+    "AT_REST", "AXIS_DECIMALS", "axis_target", "base", "called", "frame", "frames_and_load", "header", "not_set",
+    "refuse_calls", "tool_and_load",
 ]  # fmt: skip
 
 FRAME_ANGLE_DECIMALS, AXIS_DECIMALS = 6, 5
@@ -36,18 +36,22 @@ def header(lines: Sequence[str]) -> list[str]:
 
 def frames_and_load(program: Program) -> list[str]:
     """$TOOL, $BASE, and what display, PLC and supervision of a controller go by beside them."""
-    settings = program.settings
+    number = program.settings.base_number
+    numbered = [] if number is None else [f"$ACT_BASE={number}"]
+    return [*tool_and_load(program), f"$BASE={base(program.T_base_part, program.settings)}", *numbered]
+
+
+def tool_and_load(program: Program) -> list[str]:
+    """$TOOL, its number, and what it weighs."""
     lines = [f"$TOOL={frame(program.T_flange_tool)}"]
-    if (number := settings.tool_number) is not None:
+    if (number := program.settings.tool_number) is not None:
         load = f"LOAD_DATA[{number}]" if program.load is None else _load(program.load)
         lines += [f"$ACT_TOOL={number}", f"$LOAD={load}"]
-    lines.append(f"$BASE={_base(program.T_base_part, settings)}")
-    if settings.base_number is not None:
-        lines.append(f"$ACT_BASE={settings.base_number}")
     return lines
 
 
-def _base(T_base_part: Array, settings: Settings) -> str:
+def base(T_base_part: Array, settings: Settings) -> str:
+    """The value of $BASE for a frame given from the robot's own base, shape (4, 4), translation [m]."""
     if isinstance(settings.robroot, str):
         return f"{settings.robroot}:{frame(T_base_part)}"
     if settings.robroot is None:

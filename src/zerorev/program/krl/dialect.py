@@ -9,9 +9,11 @@ from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.names import identifier
 from zerorev.program.krl.read import parts_called, read_modules
+from zerorev.program.krl.retract import retract_to_krl
 from zerorev.program.krl.source import alike
 from zerorev.program.krl.write import krl_modules, refuse_other_makers
 from zerorev.program.neutral import Program
+from zerorev.program.retract import Retract
 
 __all__ = ["KRL"]
 
@@ -31,4 +33,8 @@ def _parts(file: ProgramFile) -> tuple[str, ...]:
     return tuple(name + SUFFIX for name in parts_called(file.text, file.name))
 
 
-KRL = Dialect("krl", "KUKA", SUFFIX, alike, identifier, refuse_other_makers, _write, _read, _parts)
+def _retract(retract: Retract, name: str, version: str) -> ProgramFile:
+    return ProgramFile(name + SUFFIX, retract_to_krl(retract, name, version))
+
+
+KRL = Dialect("krl", "KUKA", SUFFIX, alike, identifier, refuse_other_makers, _write, _read, _parts, _retract)

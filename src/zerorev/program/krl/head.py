@@ -11,7 +11,7 @@ from zerorev.program.krl.text import comment
 from zerorev.program.neutral import Program
 from zerorev.program.plan_mark import MARK
 
-__all__ = ["RULE", "head", "part_head"]
+__all__ = ["RULE", "head", "mark", "part_head"]
 
 RULE = "; " + "-" * 98
 
@@ -46,7 +46,7 @@ def head(program: Program, findings: tuple[Finding, ...], version: str) -> list[
         ("Holes     ", f"{len(program.holes)}, with {reversals} joint reversals in all"),
     )
     ids = {hole.id for hole in program.holes} | {finding.hole for finding in findings if finding.hole is not None}
-    lines = [RULE, *comment(f"Written by zerorev {version}"), *_mark(program)]
+    lines = [RULE, *comment(f"Written by zerorev {version}"), *mark(program)]
     for first, text in facts:
         lines += comment(text, first=first, longest=3 * LONGEST_ID)
     for finding in findings:
@@ -66,7 +66,7 @@ def part_head(program: Program, title: str, version: str) -> list[str]:
     return [
         RULE,
         *comment(f"Written by zerorev {version}"),
-        *_mark(program),
+        *mark(program),
         *comment(title),
         ";",
         *_sentences(program),
@@ -82,7 +82,7 @@ def _sentences(program: Program) -> list[str]:
     ]
 
 
-def _mark(program: Program) -> list[str]:
+def mark(program: Program) -> list[str]:
     """Whose program this is, as `plan_mark` finds it again."""
     return comment(f"{program.mark} {program.plan_file}", first=MARK) if program.plan_file else []
 

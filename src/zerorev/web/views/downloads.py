@@ -16,7 +16,8 @@ from nicegui import ui
 from zerorev.errors import NotExportableError, ZerorevError
 from zerorev.model.finding import Finding
 from zerorev.model.plan import Plan
-from zerorev.program.export import Exported, exporting
+from zerorev.program.export import Exported, exporting, retract_program
+from zerorev.program.selection import number_of, selection
 from zerorev.web import files
 from zerorev.web.computing import Work
 from zerorev.web.session import Session
@@ -41,6 +42,9 @@ def downloads(session: Session, work: Work) -> None:
     ):
         _entry("Plan (JSON)", "download-plan", lambda: _whole(session, "plan", lambda: _plan(session)))
         _entry("Robot program (KRL) …", "download-krl", lambda: _program(session, work))
+        _entry("Robot program from this hole on (KRL) …", "download-krl-from", lambda: _part(session, work, rest=True))
+        _entry("Robot program of this hole (KRL) …", "download-krl-only", lambda: _part(session, work, rest=False))
+        _entry("Way out of this hole after a stop (KRL) …", "download-krl-out", lambda: _way_out(session, work))
         _entry("Figures of this hole (zip)", "download-figures", lambda: _figures(session, work, one=True))
         _entry(
             "Figures of all holes (zip)",
@@ -118,13 +122,21 @@ def _job(session: Session) -> None:
 # --- in a while -------------------------------------------------------------------------------------------------------
 
 
-def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None:
-    """Make the program, then show what its preflight found, or why there is none."""
+def _program(
+    session: Session,
+    work: Work,
+    *,
+    skip_failed: bool = False,
+    start: str | None = None,
+    only: Sequence[str] | None = None,
+) -> None:
+    """Make the program of all holes, or of a part, then show what its preflight found, or why there is none."""
     plan, unplanned = plan_of(session.state), session.state.unplanned
+    selection(plan, start, only)  # says what is wrong with it before anything is made
 
     def run() -> Iterator[Exported | NotExportableError | None]:
         try:
-            yield (yield from exporting(plan, skip_failed=skip_failed, workers=None))
+            yield (yield from exporting(plan, skip_failed=skip_failed, start=start, only=only, workers=None))
         except NotExportableError as error:
             yield error
 
@@ -132,9 +144,42 @@ def _program(session: Session, work: Work, *, skip_failed: bool = False) -> None
         if isinstance(made, Exported):
             _offer(made, len(plan.holes) + len(unplanned))
         else:
-            _refused(made, lambda: _program(session, work, skip_failed=True), can_skip=not skip_failed)
+            again = partial(_program, session, work, skip_failed=True, start=start, only=only)
+            _refused(made, again, can_skip=not skip_failed)
 
     _make(session, work, "checking for the program", len(plan.holes) + 1, run, ready, each="hole")
+
+
+def _part(session: Session, work: Work, *, rest: bool) -> None:
+    """The program of the selected hole, or of it and those that are drilled after it."""
+    hole = _selected(session)
+    _program(session, work, **({"start": hole} if rest else {"only": [hole]}))
+
+
+def _way_out(session: Session, work: Work) -> None:
+    """The program that pulls the drill out of the selected hole."""
+    plan, hole = plan_of(session.state), _selected(session)
+    number_of(plan, hole, "retract")  # says where there is none
+
+    def run() -> Iterator[Exported | NotExportableError]:
+        try:
+            yield retract_program(plan, hole)
+        except NotExportableError as error:
+            yield error
+
+    def ready(made: Exported | NotExportableError) -> None:
+        if isinstance(made, Exported):
+            _offer(made, 1)
+        else:
+            _refused(made, lambda: None, can_skip=False)
+
+    _make(session, work, "checking for the program", 1, run, ready, each="hole")
+
+
+def _selected(session: Session) -> str:
+    if session.state.selected is None:
+        raise ZerorevError("no hole is selected")
+    return session.state.selected
 
 
 def _figures(session: Session, work: Work, *, one: bool) -> None:

@@ -1,0 +1,98 @@
+"""A retract program in KRL: it asks the controller where the tool stands, and moves only if that is in the hole."""
+
+from __future__ import annotations
+
+from zerorev.program.krl.controller import AT_REST, base, header, tool_and_load
+from zerorev.program.krl.head import RULE, mark
+from zerorev.program.krl.names import label
+from zerorev.program.krl.text import comment, fixed, settled
+from zerorev.program.krl.write import EXT_BAS, PTP_ACCELERATION, refuse_other_makers
+from zerorev.program.retract import Retract
+
+__all__ = ["retract_to_krl"]
+
+OFF_AXIS, OFF_DIRECTION = 1.0, 0.5  # [mm], [deg] by which the tool may stand beside the hole's axis
+DEEPER = 0.5  # [mm] below the deepest point of the motion
+PTP_SPEED = 1  # [%]: the only PTP ends where it begins
+
+SENTENCES = (
+    "Run this program where the robot has stopped with the drill in this hole, before anything else is moved.",
+    "It reads where the tool stands ($POS_ACT) in the frame of the hole: origin at the target, X along the drill axis. "
+    "It moves only if that is within {off} mm of the axis, {turned} deg of its direction, and between {end} mm before "
+    "the target and {deep} mm behind it; else it halts and does not move.",
+    "Then one LIN pulls the drill out along its own axis (tool X), the tool not turning, to {end} mm before the "
+    "target. Joints may reverse on the way: what counts is that the drill comes out straight.",
+    "It takes for granted that $TOOL and the part stand as they did while drilling, and that the drill is not jammed. "
+    "The spindle is not switched: let it turn, or stand, as your process wants it while the drill comes out.",
+    "T1, override low, a hand on the enabling switch. Afterwards drill the hole again, or what follows it: "
+    "zerorev export --from.",
+)
+
+
+def retract_to_krl(retract: Retract, name: str, version: str) -> str:
+    """The text of a .src file; the file must be called like the program in it.
+
+    Args:
+        retract: what to write.
+        name: of the program, a KRL identifier.
+        version: of zerorev, stated in the comment block.
+
+    Raises:
+        NotExportableError: the robot is not a KUKA.
+    """
+    program, hole = retract.program, retract.hole
+    refuse_other_makers(program.manufacturer, program.robot)
+    end, deep = fixed(-retract.end * 1e3, 3), fixed(-retract.deepest * 1e3 + DEEPER, 3)
+    words = {
+        "off": f"{OFF_AXIS:g}", "turned": f"{OFF_DIRECTION:g}", "end": fixed(retract.end * 1e3, 3), "deep": deep
+    }  # fmt: skip
+    facts = (
+        f"Out of hole {hole.number} of {program.listed}: {label(hole.id)}",
+        f"Plan {program.name}, robot {program.manufacturer} {program.model}, tool {program.tool}",
+        *(f"{finding.level}: {finding.message}" for finding in retract.findings),
+    )
+    lines = [RULE, *comment(f"Written by zerorev {version}"), *mark(program)]
+    for text in facts:
+        lines += comment(text)
+    lines.append(";")
+    for text in SENTENCES:
+        lines += comment(text.format(**words), first="- ")
+    off = [
+        f"(HERE.{first}*HERE.{first}+HERE.{second}*HERE.{second} > {fixed(most**2)})"
+        for first, second, most in (("Y", "Z", OFF_AXIS), ("A", "B", OFF_DIRECTION))
+    ]
+    elsewhere = " OR ".join([f"(HERE.X < {end})", f"(HERE.X > {deep})", *off])
+    return "\n".join(
+        [
+            *header(program.settings.header),
+            f"DEF {name} ( )",
+            "DECL FRAME HERE,BACK,OUT",
+            *lines,
+            RULE,
+            EXT_BAS,
+            ";FOLD INI",
+            "BAS (#INITMOV,0 )",
+            f"BAS (#VEL_PTP,{PTP_SPEED} )",
+            f"BAS (#ACC_PTP,{PTP_ACCELERATION} )",
+            *tool_and_load(program),
+            f"$BASE={base(retract.T_base_hole, program.settings)} ; the hole",
+            "$IPO_MODE=#BASE",
+            "$ORI_TYPE=#CONSTANT",
+            "$ADVANCE=0",
+            f"$VEL.CP={settled(retract.feed, 6)} ; {retract.feed * 1e3:g} mm/s",
+            ";ENDFOLD (INI)",
+            "PTP $AXIS_ACT ; to where the robot stands: it does not move, and $TOOL and $BASE hold from here on",
+            AT_REST,
+            "HERE=$POS_ACT",
+            f"IF {elsewhere} THEN",
+            "HALT ; the tool is not in this hole: nothing is moved",
+            "ELSE",
+            "BACK={FRAME: X 0.0,Y 0.0,Z 0.0,A 0.0,B 0.0,C 0.0}",
+            f"BACK.X={end}-HERE.X",
+            "OUT=HERE:BACK",
+            "LIN OUT ; out along tool X",
+            "ENDIF",
+            "END",
+            "",
+        ]
+    )
