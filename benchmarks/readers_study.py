@@ -32,11 +32,11 @@ from zerorev.files.hole_list import MOST_PASTED, in_base_frame, read_hole_list
 from zerorev.files.hole_meaning import AS_IN_A_JOB
 from zerorev.files.io import plan_to_json, read_plan
 from zerorev.files.map_file import read_map_file
-from zerorev.files.schema import MOST_HOLES
 from zerorev.files.table_layout import Given
 from zerorev.files.text import MAX_BYTES, MAX_ROWS
 from zerorev.files.text import MAX_VALUES as JSON_VALUES
 from zerorev.files.urdf import MOST_PARTS, read_urdf
+from zerorev.files.values import MOST_HOLES
 from zerorev.files.yaml_text import MAX_VALUES
 from zerorev.model.recording import JOINT_ARRAYS, Recording
 from zerorev.program.dialects import MOST_BYTES, read_program

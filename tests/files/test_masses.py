@@ -8,7 +8,7 @@ import yaml
 from zerorev.errors import InputError
 from zerorev.files.conversion import robot_data, robot_from, tool_data, tool_from
 from zerorev.files.io import read_robot, read_tool
-from zerorev.files.schema import RobotForm, ToolForm
+from zerorev.files.robot_schema import RobotForm, ToolForm
 
 ROBOTS = ["kuka_kr6_r700_2", "abb_irb1200_5_90"]
 

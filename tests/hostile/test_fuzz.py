@@ -36,7 +36,8 @@ from zerorev.files.map_file import read_map_file
 from zerorev.files.map_schema import MapFile
 from zerorev.files.part import Part
 from zerorev.files.plan_schema import PlanFile
-from zerorev.files.schema import JobFile, RobotFile, ToolFile
+from zerorev.files.robot_schema import RobotFile, ToolFile
+from zerorev.files.schema import JobFile
 from zerorev.files.table_layout import Given
 from zerorev.files.text import json_text
 from zerorev.files.urdf import read_urdf

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import ConfigDict, Field, create_model
 
 from zerorev.files.output import write_text
-from zerorev.files.schema import Depth, Form, Id, Length, Name, Positive
-from zerorev.files.stated_forms import Words
+from zerorev.files.stated_forms import Form, Words
 from zerorev.files.text import read_text
 from zerorev.files.validation import checked, inside
+from zerorev.files.values import Depth, Id, Length, Name, Positive
 from zerorev.files.yaml_text import yaml_document, yaml_text
 from zerorev.model.ranges import RANGES, Basis, Cell, Conditioning, Law, Range
 

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.schema import DynamicsForm, FrameForm, GivenToolForm, HoleForm, RobotForm, SettingsForm, ToolForm
+from zerorev.files.robot_schema import DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
+from zerorev.files.schema import HoleForm, SettingsForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside

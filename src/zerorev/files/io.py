@@ -20,7 +20,9 @@ from zerorev.files.part import part_document
 from zerorev.files.plan_conversion import plan_from
 from zerorev.files.plan_data import FORMS, plan_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
-from zerorev.files.schema import Form, HoleForm, JobFile, RobotFile, SettingsForm, ToolFile
+from zerorev.files.robot_schema import RobotFile, ToolFile
+from zerorev.files.schema import HoleForm, JobFile, SettingsForm
+from zerorev.files.stated_forms import Form
 from zerorev.files.text import Document, json_document, json_text, read_bytes, read_text
 from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
-from zerorev.files.schema import Depth, Form, Length, Name, Three, ToolForm, kind
-from zerorev.files.stated_forms import keys_of
+from zerorev.files.robot_schema import ToolForm
+from zerorev.files.stated_forms import Form, keys_of, kind
+from zerorev.files.values import Depth, Length, Name, Three
 from zerorev.model.map_task import SETTINGS
 from zerorev.model.quantity import in_words, quantities
 from zerorev.model.settings import Settings

@@ -6,23 +6,21 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
-from zerorev.files.schema import (
+from zerorev.files.robot_schema import FrameForm, RobotForm, ToolForm
+from zerorev.files.schema import SettingsForm
+from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
+from zerorev.files.values import (
     MOST_BREAKPOINTS,
     MOST_HOLES,
     Branch,
     Depth,
-    FrameForm,
     Name,
     NotNegative,
     PlaceMm,
-    RobotForm,
-    SettingsForm,
     SixDeg,
     SpinsDeg,
     StandoffsMm,
-    ToolForm,
 )
-from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
 from zerorev.model.finding import Finding
 from zerorev.model.measures import Measures
 from zerorev.model.plan import (

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from zerorev.errors import InputError
-from zerorev.files.schema import Form
+from zerorev.files.stated_forms import Form
 from zerorev.files.text import Document, FieldPath
 
 __all__ = ["checked", "inside", "problems"]

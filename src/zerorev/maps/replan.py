@@ -10,7 +10,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.conversion import robot_from, tool_from
 from zerorev.files.map_schema import MapSettingsForm
-from zerorev.files.schema import RobotForm, ToolForm
+from zerorev.files.robot_schema import RobotForm, ToolForm
 from zerorev.files.stated_forms import noun_from
 from zerorev.files.units import m, rad
 from zerorev.maps.frames import frame_of
