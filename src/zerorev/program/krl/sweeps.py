@@ -44,8 +44,8 @@ def sweeps_to_krl(sweeps: Sweeps, name: str, *, version: str | None = None) -> s
     refuse_other_makers(robot.manufacturer, robot.name)
     lines = [
         "&ACCESS RVP", "&REL 1", "&COMMENT sweeps of single axes", f"DEF {identifier(name)} ( )",
-        *_head(sweeps, version or installed_version("zerorev")),
         "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
+        *_head(sweeps, version or installed_version("zerorev")),
         ";FOLD INI", "BAS (#INITMOV,0 )", f"BAS (#VEL_PTP,{PTP_SPEED} )", f"BAS (#ACC_PTP,{PTP_ACCELERATION} )",
         "$ADVANCE=1", ";ENDFOLD (INI)",
         _ptp(sweeps.posture),

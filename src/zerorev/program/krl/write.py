@@ -80,20 +80,21 @@ def krl_modules(
     begin = head(program, notes(program) if findings is None else findings, version)
     if not parts:
         body = [*_settings(program), *called(calls.before_job), *_moves(program), *called(calls.after_job)]
-        return {called_so: _module(program, called_so, begin, [EXT_BAS, *body])}
+        return {called_so: _module(program, called_so, [EXT_BAS, *begin], body)}
     steps = [f"{part}( )" for part in parts]
     modules = {
         called_so: _module(program, called_so, begin, [*called(calls.before_job), *steps, *called(calls.after_job)])
     }
     for number, (called_as, part) in enumerate(parts.items(), start=1):
         title = f"Part {number} of {len(parts)} of {called_so}, which starts it: {len(part.holes)} holes"
-        body = [EXT_BAS, *_settings(program), *_moves(part)]
-        modules[called_as] = _module(program, called_as, part_head(program, title, version), body)
+        body = [*_settings(program), *_moves(part)]
+        modules[called_as] = _module(program, called_as, [EXT_BAS, *part_head(program, title, version)], body)
     return modules
 
 
-def _module(program: Program, name: str, comments: list[str], body: list[str]) -> str:
-    return "\n".join([*header(program.settings.header), f"DEF {name} ( )", *comments, *body, "END", ""])
+def _module(program: Program, name: str, begin: list[str], body: list[str]) -> str:
+    """One module; its declaration, if it has one, comes before its comments."""
+    return "\n".join([*header(program.settings.header), f"DEF {name} ( )", *begin, *body, "END", ""])
 
 
 def _moves(program: Program) -> list[str]:
