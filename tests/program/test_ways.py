@@ -101,6 +101,9 @@ class TestThePart:
             assert (one.clearance < -1e-3) == (one.to in crossing)
             assert (len(other.joints) == 4) == (one.clearance < -2e-5)
         assert min(move.clearance for move in rising.transitions) > -2e-5
+        low = plan_job(replace(panel, settings=replace(panel.settings, safe_height=6e-3)))
+        assert {len(move.joints) for move in low.transitions} == {4}
+        assert min(move.clearance for move in low.transitions) > -2e-5
 
     def test_a_move_through_the_part_stops_the_export(self, panel):
         straight = plan_job(replace(panel, settings=replace(panel.settings, safe_height=0.0)))

@@ -185,8 +185,9 @@ class Settings:
         Number(
             "height over the surface through which the arm moves from hole to hole",
             MM,
-            none="each move rises as far as it must to stay over it",
-            note="Through a point on the drill axis of each hole, that far from where its stroke begins",
+            none="only where it would dip behind it",
+            note="Through a point on the drill axis of each hole, that far from where its stroke begins; a move that "
+            "would dip behind the surface all the same rises further, but with 0",
             least=0,
             label="safe height",
         ),

@@ -1,7 +1,7 @@
 """The moves from hole to hole: all axes at once, from where one hole is left to where the next one is approached.
 
-Where a job gives no safe height, a move that would dip behind the surface rises over it along the drill axes of both
-holes, as far as it must.
+A move that would dip behind the surface rises over it along the drill axes of both holes, further than the safe height
+of the job where it must; a safe height of 0 forbids it.
 """
 
 from __future__ import annotations
@@ -151,10 +151,11 @@ def _raised(part: _Part, settings: Settings, legs: list[_Leg]) -> dict[int, Near
     """Replace the moves that dip behind the surface by such as rise over it, in place; those that dip all the same."""
     lines = part.lines
     dips = {k: near for k, near in enumerate(part.nearest(legs, lines)) if near.clearance < -SLACK}
-    if settings.safe_height is not None:
-        return dips
-    for rise in RISES:
-        higher = [legs[k].rising(rise * part.robot.size) for k in dips]
+    size = part.robot.size
+    for rise in (() if settings.safe_height == 0 else RISES):
+        if rise * size <= (settings.safe_height or 0.0):
+            continue
+        higher = [legs[k].rising(rise * size) for k in dips]
         for k, leg, near in zip(list(dips), higher, part.nearest(higher, lines), strict=True):
             if near.clearance >= -SLACK:
                 legs[k] = leg

@@ -66,10 +66,10 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
         [
             *header(program.settings.header),
             f"DEF {name} ( )",
+            EXT_BAS,
             "DECL FRAME HERE,BACK,OUT",
             *lines,
             RULE,
-            EXT_BAS,
             ";FOLD INI",
             "BAS (#INITMOV,0 )",
             f"BAS (#VEL_PTP,{PTP_SPEED} )",
