@@ -331,7 +331,7 @@ class TestExport:
 
     def test_a_name_that_the_controller_would_not_take(self, plan_file, capsys, tmp_path):
         assert main(["export", str(plan_file), "--skip-failed", "-o", str(tmp_path / "my-prog.src")]) == cli.FINE
-        assert "my_prog.src" in capsys.readouterr().err
+        assert "called my_prog_" in capsys.readouterr().err
 
     def test_unknown_controller(self, plan_file, capsys):
         assert main(["export", str(plan_file), "--controller", "abacus"]) == cli.BAD_INPUT
