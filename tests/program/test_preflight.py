@@ -218,3 +218,18 @@ def test_a_stroke_shorter_than_the_decimals(published, planned, plan_of):
         hole = planned(replace(first.hole, depth=depth), Profile.straight(depth, *psi[[1, 1, 1]]), near=near)
         found = findings(plan_of(hole, lead_in=0.0), "printable")
         assert bool(found) != fine
+
+
+@pytest.mark.parametrize(("feed_mm_s", "short"), [(20, 0), (49, 0), (51, 1), (400, 2)])
+def test_moves_shorter_than_two_cycles_of_a_controller(feed_mm_s, short, published, planned, plan_of):
+    """A lead-in of 1.2 mm and a stroke of 5 mm: 24 ms at 50 and at 208 mm/s."""
+    first = published(1)
+    near, psi = [143, -108, -79, 11, 88, 217], np.deg2rad([5.0, 4.0, 3.0])
+    hole = planned(replace(first.hole, depth=5e-3), Profile(np.array([5e-3, 0.0, 5e-3]), psi), near=near)
+    plan = plan_of(hole, feed_plunge=feed_mm_s * 1e-3, feed_retract=1e-3, lead_in=1.2e-3, blend=0.0)
+    found = findings(plan, "short_move")
+    assert len(found) == (short > 0)
+    if found:
+        assert ("2 linear moves last" if short == 2 else "a linear move lasts") in found[0].message
+        assert found[0].level == "warning"
+        assert f"at {feed_mm_s} mm/s in the lead-in" in found[0].message

@@ -50,6 +50,7 @@ FindingKind = Literal[
     "reversal",
     "rows_dropped",
     "sampling",
+    "short_move",
     "skipped",
     "spindle_speed",
     "tcp_calibration",

@@ -140,8 +140,7 @@ def exporting(
         parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program),
     )
     findings = preflight(program, plan)
-    if errors := [finding for finding in findings if finding.level == "error"]:
-        raise NotExportableError(tuple(_sentence(finding) for finding in errors))
+    _refuse_errors(findings)
     called = dialect.program_name(name or wanted.name)
     files = dialect.write(program, called, findings, version)
     return Exported(files, (*findings, *_sizes(files)), called, len(program.holes))
@@ -197,6 +196,7 @@ def retract_program(
     called = dialect.program_name(name or retract_name(plan, hole_id))
     number_of(plan, hole_id, "retract")
     way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)
+    _refuse_errors(preflight(way.program, plan))
     file = dialect.retract(way, called, version or installed_version("zerorev"))
     return Exported((file,), way.findings, called, 1)
 
@@ -234,6 +234,11 @@ def _is_open(plan: Plan, hole: HolePlan, ids: Collection[str] | None) -> bool:
     if hole.verified is None or not hole.verified.passed:
         return False
     return hole.verified.subject != subject(plan.robot, plan.tool, plan.settings, hole)
+
+
+def _refuse_errors(findings: Sequence[Finding]) -> None:
+    if errors := [finding for finding in findings if finding.level == "error"]:
+        raise NotExportableError(tuple(_sentence(finding) for finding in errors))
 
 
 def _sentence(finding: Finding) -> str:

@@ -14,6 +14,7 @@ from zerorev.program.neutral import HoleProgram, LinearMove, Program
 __all__ = ["CornerDepth", "calls", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
 
 NOTICEABLE = 1e-6  # [m] a depth below this is not worth a word
+TWO_CYCLES = 24e-3  # [s]: a controller interpolates every 12 ms, or faster
 SPINDLE_SHARE = 0.01  # a change of the spindle's speed beyond this share is a warning
 
 
@@ -66,6 +67,7 @@ def notes(program: Program) -> tuple[Finding, ...]:
         *_blend(program),
         *_clearance(program),
         *_spindle(program),
+        *_short_moves(program),
         *calls(program.settings),
         *_unchecked(program),
     )
@@ -150,6 +152,26 @@ def _spindle(program: Program) -> tuple[Finding, ...]:
         f"in the {move.leg} of hole {hole_id}"
     )
     return (Finding("warning" if share > SPINDLE_SHARE else "info", "spindle_speed", message),)
+
+
+def _short_moves(program: Program) -> tuple[Finding, ...]:
+    """Linear moves that a controller has hardly time to plan: it computes a point of the path once per cycle."""
+    short = [
+        (abs(move.standoff - standoff) / move.feed, abs(move.standoff - standoff), hole.id, move)
+        for hole in program.holes
+        for standoff, _, move in segments(hole)
+        if abs(move.standoff - standoff) < TWO_CYCLES * move.feed
+    ]
+    if not short:
+        return ()
+    time, length, hole_id, move = min(short, key=lambda entry: entry[0])
+    count = f"{len(short):,} linear moves last" if len(short) > 1 else "a linear move lasts"
+    message = (
+        f"{count} less than two cycles of a controller ({TWO_CYCLES * 1e3:g} ms): {time * 1e3:.3g} ms for "
+        f"{length * 1e3:.3g} mm at {move.feed * 1e3:g} mm/s in the {move.leg} of hole {hole_id}; the feed may drop. "
+        "A lower feed, a longer stroke or lead-in, or fewer breakpoints make them longer"
+    )
+    return (Finding("warning", "short_move", message),)
 
 
 def calls(settings: Settings) -> tuple[Finding, ...]:
