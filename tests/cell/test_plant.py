@@ -7,10 +7,11 @@ import pytest
 
 from oracles.mujoco_arm import followed_by_mujoco
 from oracles.rigid_loop import rigid_loop
+from zerorev.cell.followed import MASS_EVERY, STEP
 from zerorev.cell.motions import compared
 from zerorev.cell.parameters import ParameterSet, drawn
 from zerorev.cell.plant import REST, TIME_STEP, run
-from zerorev.cell.reference import MASS_EVERY, STEP, Manner
+from zerorev.cell.reference import Manner
 from zerorev.cell.run_figures import deviations, run_figures
 from zerorev.kernels.plant import Reference
 

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from oracles.mujoco_stick_slip import pulled_by_mujoco
+from zerorev.cell.followed import MASS_EVERY, STEP
 from zerorev.cell.plant import TIME_STEP
-from zerorev.cell.reference import MASS_EVERY, STEP
 from zerorev.kernels.plant import GAP, Arm, Reference, follow
 
 INERTIA = np.array([1.0, 2.0, 0.5, 1.0, 0.3, 1.0])  # [kg m^2] of the links

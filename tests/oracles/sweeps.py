@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from zerorev.cell.followed import STEP, Followed
 from zerorev.cell.parameters import ParameterSet, drawn
 from zerorev.cell.plant import run
-from zerorev.cell.reference import STEP, Followed
 from zerorev.model.recording import Recording
 from zerorev.program.sweeps import AMPLITUDE, Sweeps
 

@@ -20,20 +20,9 @@ from zerorev.planning.sequence import with_moves
 from zerorev.report.words.answer import sequence_line
 from zerorev.web import computing
 from zerorev.web.computing import Work
+from zerorev.web.job_edits import with_hole, with_settings, without_hole
 from zerorev.web.session import Session
-from zerorev.web.state import (
-    Progress,
-    State,
-    Steered,
-    opened_job,
-    plan_of,
-    selected,
-    shown,
-    steered,
-    with_hole,
-    with_settings,
-    without_hole,
-)
+from zerorev.web.state import Progress, State, Steered, opened_job, plan_of, selected, shown, steered
 
 PATIENCE = 60.0  # [s]
 

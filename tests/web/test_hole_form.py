@@ -15,8 +15,9 @@ from zerorev.model._arrays import rotation_rpy, transform
 from zerorev.model.job import Job, Settings
 from zerorev.model.profile import Profile
 from zerorev.report.words.hole_rows import part_data
+from zerorev.web.job_edits import with_hole, with_holes, with_settings, without_hole
 from zerorev.web.session import Session
-from zerorev.web.state import opened_job, with_hole, with_holes, with_settings, without_hole
+from zerorev.web.state import opened_job
 from zerorev.web.views.fields import Fields, number
 from zerorev.web.views.hole_form import hole_of, reference_of
 from zerorev.web.views.settings_form import settings_of

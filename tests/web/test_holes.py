@@ -19,8 +19,9 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.plan import HolePlan, LostMotion
 from zerorev.report.words.hole_rows import matching
+from zerorev.web.job_edits import answered, with_hole, without_hole
 from zerorev.web.session import Session
-from zerorev.web.state import answered, opened_job, selected, with_hole, without_hole
+from zerorev.web.state import opened_job, selected
 from zerorev.web.views import holes as view
 
 

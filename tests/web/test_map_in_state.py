@@ -10,7 +10,8 @@ import pytest
 from oracles.made_map import made_map
 from zerorev.errors import InputError
 from zerorev.report.scene.map_slice import slice_of
-from zerorev.web.state import opened_map, with_cell
+from zerorev.web.job_edits import with_cell
+from zerorev.web.state import opened_map
 
 AXES = ([500], [0, 100, 200], [600, 700])
 

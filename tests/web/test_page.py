@@ -16,9 +16,10 @@ from nicegui.page import page as page_of
 
 from zerorev.web import page
 from zerorev.web.computing import Work
+from zerorev.web.job_edits import without_hole
 from zerorev.web.opening import demo
 from zerorev.web.session import Session
-from zerorev.web.state import State, opened_job, selected, without_hole
+from zerorev.web.state import State, opened_job, selected
 
 CSS = (Path(page.__file__).parent / "static" / "zerorev.css").read_text(encoding="utf-8")
 

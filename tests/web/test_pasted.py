@@ -14,9 +14,9 @@ from zerorev.errors import InputError
 from zerorev.files.hole_meaning import AS_IN_A_JOB, Meaning
 from zerorev.files.table_layout import Given
 from zerorev.web.computing import Work, plan
+from zerorev.web.job_edits import with_holes
 from zerorev.web.opening import demo, opened
 from zerorev.web.session import Session
-from zerorev.web.state import with_holes
 from zerorev.web.views import paste_form
 
 PRACTICE = ROOT / "tests/data/practice"

@@ -12,9 +12,10 @@ from zerorev.cell.possible import Arms
 from zerorev.model.job import Job
 from zerorev.model.profile import Profile
 from zerorev.model.ranges import Cell
+from zerorev.web.job_edits import with_hole, with_settings
 from zerorev.web.real_arm import Asked, RealArm, Simulated, outdated
 from zerorev.web.session import undone
-from zerorev.web.state import State, Steered, opened_job, selected, steered, with_hole, with_settings
+from zerorev.web.state import State, Steered, opened_job, selected, steered
 
 MOTION = Steered(POSITIONS[0].profile, POSITIONS[0].branch)
 

@@ -9,8 +9,9 @@ import pytest
 
 from zerorev.model.job import Job
 from zerorev.model.profile import Profile
+from zerorev.web.job_edits import with_hole, without_hole
 from zerorev.web.session import Session
-from zerorev.web.state import State, Steered, opened_job, selected, steered, with_hole, without_hole
+from zerorev.web.state import State, Steered, opened_job, selected, steered
 
 
 def test_views_are_called_on_changes_and_on_nothing_else():

@@ -21,8 +21,9 @@ from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
 from zerorev.report.scene.twist_map import LIMITED, UNREACHED, twist_map
+from zerorev.web.job_edits import answered
 from zerorev.web.session import Session
-from zerorev.web.state import Steered, answered, opened_job, selected, steered
+from zerorev.web.state import Steered, opened_job, selected, steered
 from zerorev.web.views import twist_map as view
 
 PLANNED = Profile.straight(0.05, *np.deg2rad([20.6, 1.12, -25.37]))

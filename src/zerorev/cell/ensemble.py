@@ -15,11 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from zerorev.cell.followed import Followed, dynamics_of
 from zerorev.cell.hole_estimate import THROUGH, calibrated_axis
 from zerorev.cell.motions import MOTIONS, MotionName, compared
 from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.plant import run
-from zerorev.cell.reference import Followed, Manner, dynamics_of
+from zerorev.cell.reference import Manner
 from zerorev.cell.run_figures import KEPT, RunFigures, run_figures
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan

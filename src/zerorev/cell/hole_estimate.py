@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from zerorev.cell.followed import Followed
 from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.plant import Run, weighs_itself
-from zerorev.cell.reference import Followed
 from zerorev.kernels.dynamics import inverse_dynamics
 from zerorev.kernels.plant import GAP
 from zerorev.model._arrays import Array

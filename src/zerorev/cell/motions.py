@@ -8,7 +8,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from zerorev.cell.reference import STEP, Followed, Manner, followed, track_of
+from zerorev.cell.followed import STEP, Followed
+from zerorev.cell.reference import Manner, followed, track_of
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.model.profile import Profile

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from zerorev.cell.followed import MASS_EVERY, STEP, Followed
 from zerorev.cell.parameters import ParameterSet
-from zerorev.cell.reference import MASS_EVERY, STEP, Followed
 from zerorev.kernels import plant as kernels
 from zerorev.model._arrays import Array
 from zerorev.motion.drilling import Drilling

@@ -30,6 +30,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, evaluated
 from zerorev.motion.joint_path import FULL_TURN
 from zerorev.planning.hole import with_another_motion
+from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.program.between import accelerations, moves_between, time_of_moves
 from zerorev.program.ways import Stop, Way, stop_of
 from zerorev.search.members import members
@@ -175,12 +176,12 @@ def with_moves(plan: Plan) -> Plan:
     """The plan with the moves between its holes, in the order that it has so far; holes that lack follow as listed.
 
     Args:
-        plan: any.
+        plan: any, without the finding of how far the tool turns over the job, which comes to it.
     """
     plan = replace(plan, order=tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None))
     moves = moves_of(plan)
     time = time_of((hole.cycle_time for hole in plan.holes), moves)
-    return replace(plan, transitions=moves, cycle_time=time)
+    return with_tool_turn(replace(plan, transitions=moves, cycle_time=time))
 
 
 def time_of(holes: Iterable[float | None], moves: Iterable[Transition]) -> float | None:

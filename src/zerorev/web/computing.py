@@ -23,8 +23,9 @@ from zerorev.planning.sequence import Sequenced, sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
 from zerorev.report.words.answer import sequence_line
 from zerorev.report.words.outcome import outcome
+from zerorev.web.job_edits import answered
 from zerorev.web.session import Session
-from zerorev.web.state import Moves, Progress, State, answered
+from zerorev.web.state import Moves, Progress, State
 from zerorev.workers import Machines
 
 __all__ = ["Take", "Work", "certify", "keep", "plan", "plan_selected"]

@@ -91,9 +91,8 @@ def plan_written(given: Iterator[Any]) -> Iterator[bytes]:
         InputError: the plan holds a number that no plan file may hold.
     """
     from zerorev.planning.sequence import with_moves
-    from zerorev.planning.tool_turn import with_tool_turn
 
-    return cut(json_text(plan_to_json(with_tool_turn(with_moves(whole(given))))).encode())
+    return cut(json_text(plan_to_json(with_moves(whole(given)))).encode())
 
 
 def job_written(given: Iterator[Any]) -> Iterator[tuple[str, str]]:

@@ -8,7 +8,8 @@ from dataclasses import replace
 from typing import Any
 
 from zerorev.model.plan import HolePlan
-from zerorev.web.state import State, answered
+from zerorev.web.job_edits import answered
+from zerorev.web.state import State
 
 __all__ = ["Listener", "Session", "View", "undone"]
 

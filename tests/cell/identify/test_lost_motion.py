@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from oracles.sweeps import known_arm, moved
+from zerorev.cell.followed import STEP, Followed
 from zerorev.cell.identify.lost_motion import (
     Reversal,
     loads_at,
@@ -15,7 +16,6 @@ from zerorev.cell.identify.lost_motion import (
 )
 from zerorev.cell.parameters import ARCMIN, ParameterSet
 from zerorev.cell.plant import run
-from zerorev.cell.reference import STEP, Followed
 from zerorev.errors import InputError
 from zerorev.model.dynamics import nominal_drives
 from zerorev.model.ranges import RANGES

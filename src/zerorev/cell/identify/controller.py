@@ -14,13 +14,14 @@ from functools import partial
 import numpy as np
 
 from zerorev.cell.ensemble import BLOCK
+from zerorev.cell.followed import Followed
 from zerorev.cell.motions import compared
 from zerorev.cell.parameters import ParameterSet
 from zerorev.cell.plant import run
 from zerorev.cell.recordings.metrics import Metrics, metrics
 from zerorev.cell.recordings.run import across, drilling_run
 from zerorev.cell.recordings.tip import planned_hole
-from zerorev.cell.reference import Followed, Manner
+from zerorev.cell.reference import Manner
 from zerorev.cell.run_figures import deviations
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array

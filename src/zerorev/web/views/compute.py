@@ -15,8 +15,9 @@ from zerorev.model.plan import Strokes
 from zerorev.report.words.terminal import duration, rate_text
 from zerorev.web import computing
 from zerorev.web.computing import Work
+from zerorev.web.job_edits import with_hole, with_settings
 from zerorev.web.session import Session
-from zerorev.web.state import Progress, State, with_hole, with_settings
+from zerorev.web.state import Progress, State
 from zerorev.web.views.notices import failed, note
 
 __all__ = ["compute"]

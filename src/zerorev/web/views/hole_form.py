@@ -16,8 +16,8 @@ from zerorev.files.validation import problems
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.report.words.hole_rows import part_data
+from zerorev.web.job_edits import with_hole
 from zerorev.web.session import Session
-from zerorev.web.state import with_hole
 from zerorev.web.views.fields import Fields, ends, form, group, number
 
 __all__ = ["hole_dialog", "hole_of", "reference_of"]

@@ -16,8 +16,9 @@ from zerorev.model.plan import HolePlan, Transition
 from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching
 from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings
+from zerorev.web.job_edits import without_hole
 from zerorev.web.session import Session
-from zerorev.web.state import State, selected, without_hole
+from zerorev.web.state import State, selected
 from zerorev.web.throttle import throttled
 from zerorev.web.views.fields import built_when_opened
 from zerorev.web.views.hole_columns import options, widths

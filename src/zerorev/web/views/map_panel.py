@@ -19,8 +19,9 @@ from zerorev.model.quantity import quantities
 from zerorev.report.scene.map_slice import MapSlice, computed, plane_task, slice_of
 from zerorev.report.words.workspace_map import heading
 from zerorev.web.computing import Work
+from zerorev.web.job_edits import with_cell
 from zerorev.web.session import Session
-from zerorev.web.state import State, with_cell
+from zerorev.web.state import State
 from zerorev.web.views.notices import failed
 from zerorev.workers import Machines
 

@@ -15,8 +15,8 @@ from zerorev.files.table_layout import COLUMNS, KNOWN, Given
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.web.aside import aside
+from zerorev.web.job_edits import with_holes
 from zerorev.web.session import Session
-from zerorev.web.state import with_holes
 from zerorev.web.throttle import throttled
 from zerorev.web.views.fields import Fields, ends, form, number, said
 from zerorev.web.views.hole_form import reference_of

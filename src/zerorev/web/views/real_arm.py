@@ -7,7 +7,7 @@ from pathlib import Path
 
 from nicegui import ui
 
-from zerorev.cell.reference import dynamics_of
+from zerorev.cell.followed import dynamics_of
 from zerorev.errors import InputError
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import twins_lost_motion

@@ -14,8 +14,8 @@ from zerorev.files.text import Document, FieldPath
 from zerorev.files.validation import problems
 from zerorev.model.job import Job, Settings
 from zerorev.model.stated import Choice, Number, Six, Stated, Switch, Weighed, Whole, stated
+from zerorev.web.job_edits import with_settings
 from zerorev.web.session import Session
-from zerorev.web.state import with_settings
 from zerorev.web.views.fields import Fields, ends, form, group, number
 
 __all__ = ["settings_dialog", "settings_of"]
