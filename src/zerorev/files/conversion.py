@@ -23,8 +23,9 @@ from zerorev.model.controller import Call, Calls, ExternalAxis
 from zerorev.model.dynamics import Dynamics, Link, Load
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.profile import Profile
-from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
+from zerorev.model.robot import LENGTHS, ArmGeometry, JointLimits, Robot, six
 from zerorev.model.settings import Settings
+from zerorev.model.stated import stated
 from zerorev.model.tool import Tool
 
 __all__ = [
@@ -48,10 +49,9 @@ NOMINAL_DEPTH_MM = 1.0  # of a hole whose depth is to be found
 def robot_from(form: RobotForm, **sources: Any) -> Robot:
     """The robot of a robot file or a plan file; `sources` as `Robot` has them."""
     joints = form.joints
-    lengths: dict[str, Any] = {name: float(m(value)) for name, value in form.geometry_mm.model_dump().items()}
-    arm = ArmGeometry(**lengths, sign=six(joints.sign), offset=six(rad(joints.offset_deg)))
-    accelerations = None if joints.acceleration_deg_s2 is None else rad(joints.acceleration_deg_s2)
-    limits = JointLimits(rad(joints.lower_deg), rad(joints.upper_deg), rad(joints.speed_deg_s), accelerations)
+    offset = six(rad(joints.offset_deg))
+    arm = noun_from(ArmGeometry, form.geometry_mm, LENGTHS, sign=six(joints.sign), offset=offset)
+    limits = noun_from(JointLimits, joints)
     a, b, c, d, e, f = joints.names
     words = form.manufacturer, form.model
     return Robot(form.name, arm, limits, (a, b, c, d, e, f), *words, **sources, dynamics=_dynamics_from(form.dynamics))
@@ -63,21 +63,9 @@ def _dynamics_from(form: DynamicsForm | None) -> Dynamics | None:
     links = []
     for number, link in enumerate(form.links):
         with inside(f"dynamics.links[{number}]"):
-            links.append(Link(link.mass_kg, m(link.com_mm), _tensor(link.inertia_kgm2), frame_from(link.frame)))
-    one, two, three, four, five, six_ = links
-    limit = None if form.effort_limit_nm is None else np.array(form.effort_limit_nm)
+            links.append(noun_from(Link, link, T_base_link=frame_from(link.frame)))
     with inside("dynamics"):
-        return Dynamics((one, two, three, four, five, six_), form.payload_kg, limit, form.source)
-
-
-def _tensor(six_numbers: list[float]) -> Array:
-    """The symmetric (3, 3) of xx, xy, xz, yy, yz, zz."""
-    xx, xy, xz, yy, yz, zz = six_numbers
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-def _six_numbers(tensor: Array) -> Array:
-    return tensor[[0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
+        return noun_from(Dynamics, form, links=tuple(links))
 
 
 def robot_data(robot: Robot) -> dict[str, Any]:
@@ -85,16 +73,13 @@ def robot_data(robot: Robot) -> dict[str, Any]:
     arm, limits = robot.arm, robot.limits
     numbers: dict[str, Any] = plain(
         {
-            "geometry_mm": {name: mm(getattr(arm, name)) for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")},
+            "geometry_mm": data_of(arm),
             "joints": {
                 "names": robot.joint_names,
                 "sign": [int(s) for s in arm.sign],
                 "offset_deg": deg(arm.offset),
-                "lower_deg": deg(limits.lower),
-                "upper_deg": deg(limits.upper),
-                "speed_deg_s": deg(limits.speed),
             }
-            | ({} if limits.acceleration is None else {"acceleration_deg_s2": deg(limits.acceleration)}),
+            | {key: value for key, value in data_of(limits).items() if value is not None},
         }
         | ({} if robot.dynamics is None else {"dynamics": _dynamics_data(robot.dynamics)})
     )
@@ -103,21 +88,8 @@ def robot_data(robot: Robot) -> dict[str, Any]:
 
 
 def _dynamics_data(dynamics: Dynamics) -> dict[str, Any]:
-    links = [
-        {
-            "mass_kg": link.mass,
-            "com_mm": mm(link.com),
-            "inertia_kgm2": _six_numbers(link.inertia),
-            "frame": frame_data(link.T_base_link),
-        }
-        for link in dynamics.links
-    ]
-    return {
-        "links": links,
-        "payload_kg": dynamics.payload,
-        "effort_limit_nm": dynamics.effort_limit,
-        "source": dynamics.source,
-    }
+    links = [data_of(link) | {"frame": frame_data(link.T_base_link)} for link in dynamics.links]
+    return {"links": links} | data_of(dynamics)
 
 
 def tool_from(form: ToolForm, **sources: Any) -> Tool:
@@ -135,23 +107,20 @@ def tool_from(form: ToolForm, **sources: Any) -> Tool:
 
 
 def _load_from(form: ToolForm) -> Load | None:
-    given = {"mass_kg": form.mass_kg, "com_mm": form.com_mm, "inertia_kgm2": form.inertia_kgm2}
+    given = {each.path[0]: getattr(form, each.path[0]) for each in stated(Load)}
     if all(value is None for value in given.values()):
         return None
     for key in ("mass_kg", "com_mm"):
         if given[key] is None:
             raise InputError("is missing", where=key, accepted="mass_kg and com_mm together, or neither")
-    assert form.mass_kg is not None
-    assert form.com_mm is not None
-    return Load(form.mass_kg, m(form.com_mm), _tensor(form.inertia_kgm2 or [0.0] * 6))
+    point = {"inertia_kgm2": given["inertia_kgm2"] or [0.0] * 6}
+    return noun_from(Load, form.model_copy(update=point))
 
 
 def tool_data(tool: Tool) -> dict[str, Any]:
     """The tool as a plan file holds it, with the fingerprint of its numbers."""
     T = tool.T_flange_tcp
-    weight: dict[str, Any] = {}
-    if (load := tool.load) is not None:
-        weight = {"mass_kg": load.mass, "com_mm": mm(load.com), "inertia_kgm2": _six_numbers(load.inertia)}
+    weight: dict[str, Any] = {} if tool.load is None else data_of(tool.load)
     numbers: dict[str, Any] = plain({"tcp_mm": mm(T[:3, 3]), "rpy_deg": deg(rpy_of(T[:3, :3]))} | weight)
     return {"name": tool.name} | numbers | {"sha256": _fingerprint(numbers)}
 

@@ -11,19 +11,10 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, model_validator
 
 from zerorev.files.kuka_frames import KEYS, in_own_keys
-from zerorev.files.stated_forms import Form, Many, Words
-from zerorev.files.values import (
-    INERTIA,
-    AnglesDeg,
-    Depth,
-    Inertia,
-    Length,
-    Name,
-    PlaceMm,
-    Positive,
-    SixDeg,
-    SixPositive,
-)
+from zerorev.files.stated_forms import Form, Many, Words, keys_of
+from zerorev.files.values import AnglesDeg, Name, PlaceMm, SixDeg
+from zerorev.model.dynamics import Dynamics, Link, Load
+from zerorev.model.robot import LENGTHS, ArmGeometry, JointLimits
 
 __all__ = [
     "DynamicsForm", "FrameForm", "GivenFrameForm", "GivenToolForm", "RobotFile", "RobotForm", "ToolFile", "ToolForm",
@@ -57,18 +48,12 @@ class GivenFrameForm(FrameForm):
         return in_own_keys(data, "xyz_mm")
 
 
+@keys_of(ArmGeometry, LENGTHS)
 class GeometryForm(Form):
     """The seven lengths of Brandstoetter, Angerer, Hofbaur (2014), fig. 1."""
 
-    a1: Length = Field(description="a number [mm]: shoulder forward of axis 1")
-    a2: Length = Field(description="a number [mm]: elbow offset")
-    b: Length = Field(description="a number [mm]: lateral offset")
-    c1: Length = Field(description="a number [mm]: height of the shoulder")
-    c2: Depth = Field(description="a number above 0 [mm]: upper arm")
-    c3: Length = Field(description="a number [mm]: forearm")
-    c4: Length = Field(description="a number [mm]: wrist centre to flange")
 
-
+@keys_of(JointLimits)
 class JointsForm(Form):
     """The joints as the controller shows them; model angle = sign * controller angle - offset."""
 
@@ -77,38 +62,25 @@ class JointsForm(Form):
         description="six of 1 or -1"
     )
     offset_deg: SixDeg = Field(description="six numbers [deg]")
-    lower_deg: SixDeg = Field(description="six numbers [deg]: the lower joint limits")
-    upper_deg: SixDeg = Field(description="six numbers [deg]: the upper joint limits")
-    speed_deg_s: SixPositive = Field(description="six numbers above 0 [deg/s]: the greatest joint speeds")
-    acceleration_deg_s2: SixPositive | None = Field(
-        default=None,
-        description="six numbers above 0 [deg/s^2]: the greatest joint accelerations; or null: guessed for times",
-    )
 
 
+@keys_of(Link)
 class LinkForm(Form):
     """A link that moves, as a rigid body."""
 
-    mass_kg: Positive = Field(description="a number above 0 [kg]")
-    com_mm: PlaceMm = Field(description="three numbers [mm]: the centre of mass in the link's frame")
-    inertia_kgm2: Inertia = Field(description=f"{INERTIA}; axes of the link's frame")
     frame: FrameForm = Field(
         default=FrameForm(),
         description="a mapping of xyz_mm and rpy_deg: the link's frame in the base frame where all joints show 0",
     )
 
 
+@keys_of(Dynamics)
 class DynamicsForm(Form):
     """What the links of an arm weigh."""
 
     links: Annotated[list[LinkForm], Field(min_length=6, max_length=6)] = Field(
         description="a list of six mappings of mass_kg, com_mm, inertia_kgm2 and frame: the links that move, in order"
     )
-    payload_kg: Positive = Field(description="a number above 0 [kg]: the rated load, from which the drives are guessed")
-    effort_limit_nm: SixPositive | None = Field(
-        default=None, description="six numbers above 0 [N m]: the greatest torque of each joint"
-    )
-    source: Words = Field(default="", description="text: where the numbers come from")
 
 
 class RobotForm(Form):
@@ -137,6 +109,7 @@ class RobotFile(RobotForm):
     caveats: Many[Words] = Field(default=[], description="a list of text: what to know before trusting the numbers")
 
 
+@keys_of(Load, optional=True)
 class ToolForm(Form):
     """The numbers of a tool: flange to TCP, Z_tcp against the plunge."""
 
@@ -144,13 +117,6 @@ class ToolForm(Form):
     tcp_mm: PlaceMm = Field(description="three numbers [mm]: the TCP in the flange frame")
     rpy_deg: AnglesDeg = Field(
         description="three numbers [deg]: roll, pitch, yaw of the TCP; R = Rz(yaw) Ry(pitch) Rx(roll)"
-    )
-    mass_kg: Positive | None = Field(default=None, description="a number above 0 [kg]: what the tool weighs")
-    com_mm: PlaceMm | None = Field(
-        default=None, description="three numbers [mm]: its centre of mass in the flange frame, beside mass_kg"
-    )
-    inertia_kgm2: Inertia | None = Field(
-        default=None, description=f"{INERTIA}; axes of the flange frame; left out, the mass is taken for a point"
     )
 
 

@@ -16,6 +16,7 @@ from zerorev.errors import InputError
 from zerorev.files.units import plain
 from zerorev.model.measures import criteria
 from zerorev.model.stated import UNSET, Choice, Number, Six, Stated, Switch, Weighed, Whole, stated
+from zerorev.model.stated_arrays import Tensor, Three
 from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
 from zerorev.visible import one_line
 
@@ -52,7 +53,12 @@ def kind(value: object) -> str | None:
 
 
 def keys_of(
-    noun: type, only: Collection[str] | None = None, *, needed: bool = False, or_null: bool = False
+    noun: type,
+    only: Collection[str] | None = None,
+    *,
+    needed: bool = False,
+    or_null: bool = False,
+    optional: bool = False,
 ) -> Callable[[type[F]], type[F]]:
     """Gives a form a key for each stated attribute of a noun; one that the form names keeps its place.
 
@@ -61,6 +67,7 @@ def keys_of(
         only: names of the attributes that get one; None: all.
         needed: whether a file has to have all of them, regardless of the defaults of the noun, but those added later.
         or_null: whether all may be null, because there is no such noun.
+        optional: whether all may be null or left out, because there need not be such a noun.
     """
 
     def with_keys(form: type[F]) -> type[F]:
@@ -77,6 +84,9 @@ def keys_of(
                 if isinstance(each, SixCounts) and each.total:
                     keys[each.total] = (Counted, Field(description="a whole number: reversals of all joints"))
                 keys[each.path[0]] = _key(each, needed)
+        if optional:
+            left_out = {key: Field(default=None, description=rest.description) for key, (_, rest) in keys.items()}
+            keys = {key: (accepted | None, left_out[key]) for key, (accepted, _) in keys.items()}
         if or_null:
             keys = {key: (accepted | None, rest) for key, (accepted, rest) in keys.items()}
         return _form(form.__name__, form.__doc__, keys, form, form.__module__)
@@ -113,8 +123,10 @@ def _accepted(each: Stated) -> Any:
     match each:
         case SixFigures():
             return SixMeasured
-        case Six():
+        case Six() | Tensor():
             return Annotated[list[Annotated[float, _span(each)]], Field(min_length=6, max_length=6)]
+        case Three():
+            return Annotated[list[Annotated[float, _span(each)]], Field(min_length=3, max_length=3)]
         case Whole():
             return Annotated[int, _span(each)]
         case Number():
@@ -264,6 +276,11 @@ def _inside(each: Stated, value: Any) -> Any:
             return each.null
         case _ if value is None:
             return None
+        case Three():
+            return each.unit.inside(np.array(value, dtype=np.float64))
+        case Tensor():
+            xx, xy, xz, yy, yz, zz = (float(each.unit.inside(one)) for one in value)
+            return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         case Six():
             return tuple(float(each.unit.inside(one)) for one in value)
         case Whole():
@@ -277,4 +294,6 @@ def _outside(each: Stated, value: Any) -> Any:
     """What a file holds of a value in SI and radians."""
     if value is None or isinstance(each, Whole) or not isinstance(each, Number):
         return value
+    if isinstance(each, Tensor):
+        value = value[[0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
     return each.unit.outside(np.asarray(value, dtype=np.float64))

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 import numpy.typing as npt
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
+from zerorev.model.stated import Number, Six, with_attributes
+from zerorev.model.stated_arrays import Tensor, Three
+from zerorev.model.stated_figures import Text
+from zerorev.model.units import KG, KG_M2, MM, NM
 
 __all__ = ["Drives", "Dynamics", "Link", "Load", "nominal_drives"]
 
+ABOUT_THE_CENTRE = "xx, xy, xz, yy, yz, zz about the centre of mass"
 ARCMIN = float(np.deg2rad(1 / 60))
 ROUNDING = 1e-6  # of the moments of inertia, which files round
 
@@ -21,15 +27,12 @@ class Link:
     """A link of an arm as a rigid body.
 
     Attributes:
-        mass: [kg].
-        com: centre of mass in the link's frame [m], shape (3,).
-        inertia: about the centre of mass, axes of the link's frame [kg m^2], shape (3, 3).
         T_base_link: the link's frame in the base frame where all controller angles are 0, shape (4, 4), [m].
     """
 
-    mass: float
-    com: Array
-    inertia: Array
+    mass: Annotated[float, Number("", KG, above=0)]
+    com: Annotated[Array, Three("the centre of mass in the link's frame", MM)]
+    inertia: Annotated[Array, Tensor(f"{ABOUT_THE_CENTRE}; axes of the link's frame", KG_M2)]
     T_base_link: Array
 
     def __post_init__(self) -> None:
@@ -45,17 +48,14 @@ class Link:
 
 @dataclass(frozen=True)
 class Load:
-    """What hangs on the flange as a rigid body.
+    """What hangs on the flange as a rigid body."""
 
-    Attributes:
-        mass: [kg].
-        com: centre of mass in the flange frame [m], shape (3,).
-        inertia: about the centre of mass, axes of the flange frame [kg m^2], shape (3, 3).
-    """
-
-    mass: float
-    com: Array
-    inertia: Array
+    mass: Annotated[float, Number("what the tool weighs", KG, above=0)]
+    com: Annotated[Array, Three("its centre of mass in the flange frame, beside mass_kg", MM)]
+    inertia: Annotated[
+        Array,
+        Tensor(f"{ABOUT_THE_CENTRE}; axes of the flange frame; left out, the mass is taken for a point", KG_M2),
+    ]
 
     def __post_init__(self) -> None:
         """Check that it is a body; one without an inertia of its own is a point."""
@@ -71,15 +71,14 @@ class Dynamics:
 
     Attributes:
         links: the six that move, from the base outwards.
-        payload: rated load [kg]; what the drives are guessed from (`nominal_drives`).
-        effort_limit: greatest torque of each joint [N m], shape (6,); None: not known.
-        source: where the numbers come from.
     """
 
     links: tuple[Link, Link, Link, Link, Link, Link]
-    payload: float
-    effort_limit: Array | None = None
-    source: str = ""
+    payload: Annotated[float, Number("the rated load, from which the drives are guessed", KG, above=0)]
+    effort_limit: Annotated[Array | None, Six("the greatest torque of each joint", NM, above=0, none="not known")] = (
+        None
+    )
+    source: Annotated[str, Text("where the numbers come from")] = ""
 
     def __post_init__(self) -> None:
         """Check the numbers."""
@@ -169,3 +168,7 @@ def _inertia(value: npt.ArrayLike) -> Array:
             accepted="moments above 0, none greater than the sum of the other two",
         )
     return inertia
+
+
+for _noun in (Link, Load, Dynamics):
+    _noun.__doc__ = with_attributes(_noun)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
 from zerorev.model.dynamics import Dynamics
+from zerorev.model.stated import Number, with_attributes
+from zerorev.model.stated import Six as SixNumbers
+from zerorev.model.units import DEG, DEG_S, DEG_S2, MM
 
-__all__ = ["NIL_RATE", "ArmGeometry", "JointLimits", "Robot"]
+__all__ = ["LENGTHS", "NIL_RATE", "ArmGeometry", "JointLimits", "Robot"]
 
 MIDDLE_REACH = 0.7  # [m] of an arm of size 1
 NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm, at this size
@@ -23,37 +26,31 @@ Six = tuple[float, float, float, float, float, float]
 class ArmGeometry(NamedTuple):
     """Seven lengths [m], and how the controller counts the joints; a NamedTuple, so that kernels take it whole.
 
-    The lengths are those of Brandstoetter, Angerer, Hofbaur (2014): a1 shoulder forward of axis 1, a2 elbow offset,
-    b lateral offset, c1 shoulder height, c2 upper arm, c3 forearm, c4 wrist centre to flange.
+    The lengths are those of Brandstoetter, Angerer, Hofbaur (2014), fig. 1.
     Model angle q = sign * controller angle - offset; at q = 0 the arm stands straight up.
     """
 
-    a1: float
-    a2: float
-    b: float
-    c1: float
-    c2: float
-    c3: float
-    c4: float
+    a1: Annotated[float, Number("shoulder forward of axis 1", MM, key="a1")]
+    a2: Annotated[float, Number("elbow offset", MM, key="a2")]
+    b: Annotated[float, Number("lateral offset", MM, key="b")]
+    c1: Annotated[float, Number("height of the shoulder", MM, key="c1")]
+    c2: Annotated[float, Number("upper arm", MM, key="c2", above=0)]
+    c3: Annotated[float, Number("forearm", MM, key="c3")]
+    c4: Annotated[float, Number("wrist centre to flange", MM, key="c4")]
     sign: Six
     offset: Six  # [rad]
 
 
 @dataclass(frozen=True)
 class JointLimits:
-    """What the joints may do, as the controller counts them.
+    """What the joints may do, as the controller counts them; the arrays have shape (6,)."""
 
-    Attributes:
-        lower: least angle [rad], shape (6,).
-        upper: greatest angle [rad], shape (6,).
-        speed: greatest speed [rad/s], shape (6,).
-        acceleration: greatest acceleration [rad/s^2], shape (6,), or None where it is not known.
-    """
-
-    lower: Array
-    upper: Array
-    speed: Array
-    acceleration: Array | None = None
+    lower: Annotated[Array, SixNumbers("the lower joint limits", DEG)]
+    upper: Annotated[Array, SixNumbers("the upper joint limits", DEG)]
+    speed: Annotated[Array, SixNumbers("the greatest joint speeds", DEG_S, above=0)]
+    acceleration: Annotated[
+        Array | None, SixNumbers("the greatest joint accelerations", DEG_S2, above=0, none="guessed for times")
+    ] = None
 
     def __post_init__(self) -> None:
         """Check shapes, finiteness and order."""
@@ -166,3 +163,9 @@ def six(values: Array | Sequence[float]) -> Six:
     """Six plain floats."""
     a, b, c, d, e, f = map(float, values)
     return (a, b, c, d, e, f)
+
+
+LENGTHS = ArmGeometry._fields[:7]
+
+for _noun in (ArmGeometry, JointLimits):
+    _noun.__doc__ = with_attributes(_noun)

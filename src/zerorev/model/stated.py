@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import KW_ONLY, MISSING, dataclass, fields, replace
+from dataclasses import KW_ONLY, MISSING, dataclass, fields, is_dataclass, replace
 from inspect import cleandoc
 from typing import Any, ClassVar, TypeVar, get_type_hints
 
@@ -240,7 +240,7 @@ def stated(noun: type[Any]) -> tuple[Stated, ...]:
     """The statements of a noun's attributes in order, each with its name and default.
 
     Args:
-        noun: a dataclass; attributes without a statement are left out.
+        noun: a dataclass or a NamedTuple; attributes without a statement are left out.
     """
     if noun not in _KNOWN:
         _KNOWN[noun] = tuple(_stated(noun))
@@ -249,11 +249,18 @@ def stated(noun: type[Any]) -> tuple[Stated, ...]:
 
 def _stated(noun: type[Any]) -> Iterator[Stated]:
     hints, group = get_type_hints(noun, include_extras=True), ""
-    for field in fields(noun):
-        for said in getattr(hints[field.name], "__metadata__", ()):
+    for name, given in _attributes(noun):
+        for said in getattr(hints[name], "__metadata__", ()):
             if isinstance(said, Stated):
-                group, default = said.group or group, UNSET if field.default is MISSING else field.default
-                yield replace(said, name=field.name, default=default, group=group)
+                group, default = said.group or group, UNSET if given is MISSING else given
+                yield replace(said, name=name, default=default, group=group)
+
+
+def _attributes(noun: type[Any]) -> list[tuple[str, Any]]:
+    """Names and defaults of the attributes of a dataclass or a NamedTuple."""
+    if is_dataclass(noun):
+        return [(field.name, field.default) for field in fields(noun)]
+    return [(name, noun._field_defaults.get(name, MISSING)) for name in noun._fields]
 
 
 def check(noun: object) -> None:

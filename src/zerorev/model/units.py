@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 if TYPE_CHECKING:
     from zerorev.model._arrays import Array
 
-__all__ = ["DEG", "DEG_PER_MM", "MM", "MM_S", "NEWTON", "NM_PER_RAD", "ONE", "PERCENT", "RPM", "UM_PER_N", "S", "Unit"]
+__all__ = [
+    "DEG", "DEG_PER_MM", "DEG_S", "DEG_S2", "KG", "KG_M2", "MM", "MM_S", "NEWTON", "NM", "NM_PER_RAD", "ONE", "PERCENT",
+    "RPM", "UM_PER_N", "S", "Unit",
+]  # fmt: skip
 
 V = TypeVar("V", float, "Array")
 
@@ -54,7 +57,12 @@ MM = Unit("mm", "mm", "m", per=1e3, length=1, most=1e6)
 MM_S = Unit("mm/s", "mm_s", "m/s", per=1e3, length=1)
 DEG = Unit("deg", "deg", "rad", angle=True, most=36_000)
 DEG_PER_MM = Unit("deg/mm", "deg_per_mm", "rad/m", angle=True, times=1e3, length=-1, most=1e4)
+DEG_S = Unit("deg/s", "deg_s", "rad/s", angle=True)
+DEG_S2 = Unit("deg/s^2", "deg_s2", "rad/s^2", angle=True)
 S = Unit("s", "s", "s")
+KG = Unit("kg", "kg", "kg")
+KG_M2 = Unit("kg m^2", "kgm2", "kg m^2", most=1e9)
+NM = Unit("N m", "nm", "N m")
 NEWTON = Unit("N", "n", "N", most=1e6)
 NM_PER_RAD = Unit("N m/rad", "nm_per_rad", "N m/rad")
 PERCENT = Unit("%", "percent", per=100)

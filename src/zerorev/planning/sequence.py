@@ -175,8 +175,10 @@ def moves_of(plan: Plan) -> tuple[Transition, ...]:
 def with_moves(plan: Plan) -> Plan:
     """The plan with the moves between its holes, in the order that it has so far; holes that lack follow as listed.
 
+    How far the tool turns over all of them is said, too.
+
     Args:
-        plan: any, without the finding of how far the tool turns over the job, which comes to it.
+        plan: any.
     """
     plan = replace(plan, order=tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None))
     moves = moves_of(plan)

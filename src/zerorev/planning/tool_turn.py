@@ -46,7 +46,7 @@ def hole_turn(answer: HolePlan, lead_in: LeadIn) -> Iterator[Finding]:
 
 
 def with_tool_turn(plan: Plan) -> Plan:
-    """The plan with the finding of how far the tool turns over the whole job.
+    """The plan with the finding of how far the tool turns over the whole job, in place of an older one.
 
     Args:
         plan: with the moves between its holes.
@@ -54,7 +54,8 @@ def with_tool_turn(plan: Plan) -> Plan:
     turns = ToolTurn(plan)
     for answer in plan.holes:
         turns.add(answer)
-    return replace(plan, findings=(*plan.findings, *turns.findings()))
+    others = (finding for finding in plan.findings if finding.kind != "tool_turn")
+    return replace(plan, findings=(*others, *turns.findings()))
 
 
 class _Run(NamedTuple):
