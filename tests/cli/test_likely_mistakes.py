@@ -159,7 +159,7 @@ def test_xacro_says_how_to_expand_it():
 def test_angles_of_a_hole(capsys, tmp_path, axis, direction):
     """A frame has three axes: the one that drills has to be said."""
     said = refused(capsys, "plan", PRACTICE / "c18_abc/euler.yaml")
-    assert "drill_axis (hole 'a'): 'left out' is not among the choices" in said
+    assert "drill_axis (hole 'a'): 'not given' is not among the choices" in said
     assert "which axis of the frame of abc_deg points into the material" in said
     text = (PRACTICE / "c18_abc/euler.yaml").read_text(encoding="utf-8")
     (tmp_path / "job.yaml").write_text(text.replace("abc_deg: [0, 90, 0]", f"abc_deg: [0, 90, 0], drill_axis: {axis}"))

@@ -71,7 +71,7 @@ def with_direction(data: Any) -> Any:
     found = dict(data)
     if "direction" in data or "abc_deg" not in data:
         return found | {"drill_axis": "beside direction" if "direction" in data else "without abc_deg"}
-    found.setdefault("drill_axis", "left out")
+    found.setdefault("drill_axis", "not given")
     given, axis = data["abc_deg"], DRILL_AXES.get(str(found["drill_axis"]))
     if axis is None or not isinstance(given, list) or [type(each) in (int, float) for each in given] != [True] * 3:
         return found | {"direction": [0.0, 0.0, 1.0]}  # the form refuses the others

@@ -127,8 +127,8 @@ class GivenToolForm(ToolForm):
 
     tool_x: Literal["drill"] | None = Field(
         default=None,
-        description="drill: X of the tool points along the drill, as TOOL_DATA of a KUKA has it; left out, Z points "
-        "against the plunge",
+        description="drill: X of the tool points along the drill, as TOOL_DATA of a KUKA has it; beside rpy_deg or "
+        "abc_deg it may be left out, and Z points against the plunge",
     )
 
     @model_validator(mode="before")
@@ -136,7 +136,7 @@ class GivenToolForm(ToolForm):
     def _own_keys(cls, data: Any) -> Any:
         changed = in_own_keys(data, "tcp_mm")
         if changed is not data and "abc_deg" not in data:
-            changed.setdefault("tool_x", "left out")  # which axis of KUKA's frame drills has to be said
+            changed.setdefault("tool_x", "not given")  # which axis of KUKA's frame drills has to be said
         return changed
 
 

@@ -8,14 +8,16 @@ from dataclasses import dataclass, fields
 
 from zerorev.errors import InputError
 
-__all__ = ["CALL", "HEADER_LINE", "VARIABLE", "Call", "Calls", "ExternalAxis", "check_controller"]
+__all__ = ["CALL", "HEADER_LINE", "ROBROOT", "VARIABLE", "Call", "Calls", "ExternalAxis", "check_controller"]
 
 CALL = (
     "a name, or a name with literal arguments in brackets: numbers, TRUE, FALSE, #WORD, or a text in double quotes, "
     "e.g. SPINDLE_ON(6000)"
 )
 HEADER_LINE = "a line that begins with & and a word, of at most 100 printable ASCII characters"
-VARIABLE = "the name of a variable, e.g. $ROBROOT"
+ROBROOT = "$ROBROOT"
+"""In which a controller keeps where the robot's own base stands in the world."""
+VARIABLE = f"the name of a variable, e.g. {ROBROOT}"
 
 _NAME = r"[A-Za-z][A-Za-z0-9_]{0,23}"
 _LITERAL = rf'-?[0-9]{{1,9}}(?:\.[0-9]{{1,9}})?|TRUE|FALSE|#{_NAME}|"[ !#-:<-~]{{0,80}}"'

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 from itertools import groupby
 
 from zerorev.errors import InputError, NotExportableError
+from zerorev.model.controller import ROBROOT
 from zerorev.model.plan import Plan
 from zerorev.model.written import Drilled, Statement, WrittenHole, WrittenProgram
 from zerorev.program.dialect import Dialect
@@ -115,12 +116,26 @@ class Expected:
             before += tuple(f"export refuses these holes one after the other: {why}" for why in refusal.reasons)
         else:
             if wanted is not None:
-                before += tuple(_differences(program.head[1:], wanted.head[1:], self.dialect, program.holes[0].line))
+                before += self._head_differs(kept, wanted, program)
                 around = self._around(kept, wanted, program, drilled)
         return tuple(
             self._hole(hole.hole.id, drilled.get(hole.hole.id), (*before, *around.get(hole.hole.id, ())))
             for hole in self.plan.holes
         )
+
+    def _head_differs(self, kept: tuple[str, ...], wanted: WrittenProgram, program: WrittenProgram) -> tuple[str, ...]:
+        """What differs before the first hole, but for the program's name.
+
+        Where the plan does not say where the robot stands, the program may ask the controller for it: the part frame is
+        one of the robot's own base.
+        """
+        line = program.holes[0].line
+        found = tuple(_differences(program.head[1:], wanted.head[1:], self.dialect, line))
+        if not found or self.plan.settings.robroot is not None or program.parts:
+            return found
+        asking = replace(self.plan, settings=replace(self.plan.settings, robroot=ROBROOT))
+        other = _read_again(build_program(asking, skip_failed=True, only=kept), self.dialect)
+        return found if any(_differences(program.head[1:], other.head[1:], self.dialect, line)) else ()
 
     def _of(
         self, kept: tuple[str, ...], program: WrittenProgram, drilled: Mapping[str, WrittenHole | None]

@@ -152,7 +152,7 @@ def _raised(part: _Part, settings: Settings, legs: list[_Leg]) -> dict[int, Near
     lines = part.lines
     dips = {k: near for k, near in enumerate(part.nearest(legs, lines)) if near.clearance < -SLACK}
     size = part.robot.size
-    for rise in (() if settings.safe_height == 0 else RISES):
+    for rise in () if settings.safe_height == 0 else RISES:
         if rise * size <= (settings.safe_height or 0.0):
             continue
         higher = [legs[k].rising(rise * size) for k in dips]

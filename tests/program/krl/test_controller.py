@@ -270,3 +270,23 @@ def test_the_app_keeps_what_it_has_no_field_for():
     assert not wrong
     assert settings == replace(job.settings, blend=2e-3)
     assert isinstance(job, Job)
+
+
+def test_a_program_may_ask_the_controller_where_the_robot_stands(published, plan_of):
+    """Where the job does not say it: the frame is one of the robot's own base, so this is right for every mounting."""
+    plan = plan_of(published(1), published(2))
+    text = export(plan).text
+    asking = text.replace("$BASE={FRAME", "$BASE=$ROBROOT:{FRAME")
+    assert asking != text
+    for other, verdict in (
+        (asking, "certified"),
+        (asking.replace("$ROBROOT", "$WORLD"), "refuted"),
+        (asking.replace("$ADVANCE=3", "$ADVANCE=2"), "refuted"),
+    ):
+        program = read_krl(other)
+        found = certify_program(plan, program, as_exported(plan, program, KRL))
+        assert {hole.certificate.verdict for hole in found.holes} == {verdict}
+    here = plan_of(published(1), robroot=ROOT)
+    program = read_krl(export(here).text.replace("$BASE={FRAME", "$BASE=$ROBROOT:{FRAME"))
+    (hole,) = certify_program(here, program, as_exported(here, program, KRL)).holes
+    assert hole.certificate.verdict == "refuted"
