@@ -17,6 +17,9 @@ from zerorev.errors import InputError
 from zerorev.model.job import Job
 from zerorev.model.map_task import Question
 from zerorev.motion.drilling import Drilling
+from zerorev.placement.margins import Asked, Look
+from zerorev.placement.sharing import share
+from zerorev.placement.tool_offset import offset_curve
 from zerorev.planning.hole import plan, plan_deepest
 from zerorev.planning.job import plan_job
 from zerorev.planning.proof_check import check_proofs
@@ -129,6 +132,40 @@ def near():
     """A motion that comes nearer to a limit than 12 deg, planned without a margin; and the settings with one."""
     drilled = asked(4, 0.0)
     return drilled, plan(*drilled.all), replace(drilled.settings, limit_margin=MARGIN)
+
+
+def test_whoever_asks_how_deep_asks_with_it():
+    """Placement, sharing and the tool's offset have the strokes of a robot with narrower limits."""
+    drilled = asked(5)
+    narrow = narrowed(drilled)
+    jobs = [Job(each.robot, each.tool, (each.hole,), each.settings) for each in (drilled, narrow)]
+    here = Look(np.zeros(4), (0,), -np.inf)
+    placed = [Asked(job)(here)[0] for job in jobs]
+    shared = [share([job, job]).margins[0, 0] for job in jobs]
+    offset = [
+        offset_curve(each.robot, each.tool, [each.hole], each.settings, [0.1]).deepest.item()
+        for each in (drilled, narrow)
+    ]
+    for kept, there in (placed, shared, offset):
+        assert kept == there
+    wide = Asked(Job(drilled.robot, drilled.tool, (drilled.hole,), replace(drilled.settings, limit_margin=0.0)))
+    assert wide(here)[0] > placed[0] + 1e-3
+
+
+def test_the_way_to_a_hole_and_between_holes_keeps_it():
+    job = zr.read_job(PANEL)
+    margin = np.deg2rad(10.0)
+    settings = replace(
+        job.settings, proof_boxes=0, limit_margin=margin, approach=0.03, retract=0.05, safe_height=0.1, clearance=0.01
+    )
+    made = plan_job(replace(job, holes=job.holes[5:40:4], settings=settings))
+    limits = made.robot.limits
+    joints = np.concatenate([move.joints for move in made.transitions])
+    assert len(joints) > 2 * len(made.transitions)
+    assert np.minimum(joints - limits.lower, limits.upper - joints).min() >= margin - 1e-9
+    without = plan_job(replace(job, holes=job.holes[5:40:4], settings=replace(settings, limit_margin=0.0)))
+    joints = np.concatenate([move.joints for move in without.transitions])
+    assert np.minimum(joints - limits.lower, limits.upper - joints).min() < margin
 
 
 class TestWhoeverChecks:
