@@ -18,7 +18,8 @@ from zerorev.model.controller import ROBROOT
 from zerorev.model.plan import Plan
 from zerorev.model.written import Drilled, Statement, WrittenHole, WrittenProgram
 from zerorev.program.dialect import Dialect
-from zerorev.program.neutral import Program, build_program, refusals
+from zerorev.program.neutral import Program, build_program
+from zerorev.program.refusals import refusals
 
 __all__ = ["Expected", "as_exported", "expected"]
 

@@ -8,7 +8,7 @@ passes the singularity of those angles within the range of position 1.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,14 +18,15 @@ from zerorev.model._arrays import Array, transform
 from zerorev.model.dynamics import Load
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Plan, named_holes
+from zerorev.model.plan import HolePlan, Plan
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.between import moves_between
 from zerorev.program.plan_mark import plan_mark
+from zerorev.program.refusals import left_out, refusals
 from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
 from zerorev.program.ways import Stop, stop_of
 
-__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "refusals", "split"]
+__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "split"]
 
 T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
 """The tool frame as written, in the tcp frame."""
@@ -175,7 +176,7 @@ def build_program(
     if None in refused or (refused and not skip_failed) or not kept:
         reasons = (f"{'the plan' if hole_id is None else f'hole {hole_id}'}: {why}" for hole_id, why in refused.items())
         raise NotExportableError(tuple(reasons) or ("the plan has no holes",))
-    findings = _left_out(plan, refused)
+    findings = left_out(plan, refused)
     stops = [_stop(plan, hole) for hole in kept]
     ways, end = _between(plan, stops)
     numbers = {hole.hole.id: number for number, hole in enumerate(plan.holes, start=1)}
@@ -218,47 +219,6 @@ def split(program: Program) -> tuple[Program, ...]:
         )
         for size, end in zip(program.parts, ends, strict=True)
     )
-
-
-def _left_out(plan: Plan, refused: Mapping[str | None, str]) -> list[Finding]:
-    """Which holes of the job are missing from the program: those that the plan lacks, then those that it refuses."""
-    found = [finding for finding in plan.findings if finding.kind == "unfinished"]
-    if refused:
-        kept, ids = len(plan.holes) - len(refused), [str(hole_id) for hole_id in refused]
-        message = f"only {kept:,} of {len(plan.holes):,} holes are in the program; left out: {named_holes(ids)}"
-        found.append(Finding("warning", "incomplete", message))
-    return found + [
-        Finding("warning", "skipped", f"left out of the program: {why}", hole_id) for hole_id, why in refused.items()
-    ]
-
-
-def refusals(plan: Plan) -> dict[str | None, str]:
-    """Why a hole must not be exported, by its id; under None, why the whole plan must not.
-
-    Args:
-        plan: with its checks and findings.
-    """
-    reasons: dict[str | None, str] = {}
-    errors = [finding for finding in plan.findings if finding.level == "error"]
-    if whole := [finding.message for finding in errors if finding.hole is None]:
-        reasons[None] = "; ".join(whole)
-    for hole in plan.holes:
-        own = [*hole.findings, *(finding for finding in errors if finding.hole == hole.hole.id)]
-        if why := _why_not(hole, [finding.message for finding in own if finding.level == "error"]):
-            reasons[hole.hole.id] = why
-    return reasons
-
-
-def _why_not(hole: HolePlan, errors: list[str]) -> str:
-    if errors:
-        return "; ".join(errors)
-    if hole.status == "infeasible" or hole.motion is None:
-        return "it has no motion"
-    if hole.verified is None:
-        return "it was not verified"
-    if not hole.verified.passed:
-        return "it did not pass the check: " + ("; ".join(hole.verified.failures) or "no reason given")
-    return ""
 
 
 def _stop(plan: Plan, hole: HolePlan) -> Stop:

@@ -17,7 +17,7 @@ AS_WRITTEN = np.array([[0, 0, 1.0, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]
 
 
 PLAIN = (
-    "DECL FRAME HERE,BACK,OUT", "WAIT SEC 0.0", "END", "$IPO_MODE=#BASE", "$ORI_TYPE=#CONSTANT", "$ADVANCE=0"
+    "DECL FRAME HERE,BACK,GOAL", "WAIT SEC 0.0", "END", "$IPO_MODE=#BASE", "$ORI_TYPE=#CONSTANT", "$ADVANCE=0"
 )  # fmt: skip
 
 
@@ -73,10 +73,10 @@ class Run:
             self.frames["BACK"] = [0.0] * 6
         elif match := re.fullmatch(r"BACK\.X=(-?[\d.]+)-HERE\.X", line):
             self.frames["BACK"][0] = float(match[1]) - self.frames["HERE"][0]
-        elif line == "OUT=HERE:BACK":
-            self.frames["OUT"] = self.pose("HERE") @ self.pose("BACK")
-        elif line == "LIN OUT":
-            self.moves.append(self.state["BASE"] @ self.frames["OUT"])
+        elif line == "GOAL=HERE:BACK":
+            self.frames["GOAL"] = self.pose("HERE") @ self.pose("BACK")
+        elif line == "LIN GOAL":
+            self.moves.append(self.state["BASE"] @ self.frames["GOAL"])
         elif line == "HALT":
             self.halted = True
         else:

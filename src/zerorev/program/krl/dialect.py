@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
+from zerorev.program.krl.modules import parts_called, read_modules
 from zerorev.program.krl.names import identifier
-from zerorev.program.krl.read import parts_called, read_modules
 from zerorev.program.krl.retract import retract_to_krl
 from zerorev.program.krl.source import alike
 from zerorev.program.krl.write import krl_modules, refuse_other_makers

@@ -8,17 +8,17 @@ is required here, independent of the plan: how the tool turns, in which frames, 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import NoReturn
 
 from zerorev.errors import InputError
 from zerorev.model.written import Six, Statement, Word, WrittenHole, WrittenMove, WrittenProgram
-from zerorev.program.krl.names import KEPT, part_name
+from zerorev.program.krl.names import KEPT
 from zerorev.program.krl.source import shape, statements, words
 
-__all__ = ["parts_called", "read_krl", "read_modules"]
+__all__ = ["read_krl", "read_starter"]
 
 NAME = re.compile(r"[A-Z][A-Z0-9_]{0,23}", re.IGNORECASE)
 
@@ -39,69 +39,18 @@ def read_krl(text: str, file: str = "program") -> WrittenProgram:
     return reading.end()
 
 
-def read_modules(files: Sequence[tuple[str, str]]) -> WrittenProgram:
-    """Read the text of a program of several files as if it were one.
-
-    Args:
-        files: text and name of each: the one that is started, then the parts that it calls, in order.
+def read_starter(text: str, file: str = "program") -> tuple[str, tuple[Statement, ...]] | None:
+    """Name and statements of a program that sets and moves nothing itself, but calls others; None: of any other.
 
     Raises:
-        InputError: as `read_krl`; parts that are not of one kind.
+        InputError: as `read_krl`.
     """
-    (text, file), *others = files
-    if not others:
-        return read_krl(text, file)
-    main = _Reading(file)
-    for statement in statements(text, main.refuse_at):
-        main.take(statement)
-    if not main.ended or main.holes or main.hole:
-        main.refuse("moves in a program that calls parts")
-    read = [(_short(name), read_krl(text, name)) for text, name in others]
-    first, last = read[0][1], read[-1][1]
-    for name, part in read:
-        if (part.tool_mm_deg, part.base_mm_deg) != (first.tool_mm_deg, first.base_mm_deg):
-            accepted = "the frames of the first part"
-            raise InputError("$TOOL or $BASE differs from that of the first part", where=name, accepted=accepted)
-    head = [_in_file(statement, _short(file)) for statement in main.head]
-    for name, part in read:
-        head += [_in_file(each, name) for each in (*part.head, *(part.tail if part is not last else ()))]
-    holes = tuple(
-        replace(
-            hole,
-            statements=tuple(_in_file(each, name) for each in hole.statements),
-            way=tuple(_in_file(each, name) for each in hole.way),
-            file=name,
-        )
-        for name, part in read
-        for hole in part.holes
-    )
-    tail = tuple(_in_file(each, read[-1][0]) for each in last.tail)
-    sizes = tuple(len(part.holes) for _, part in read)
-    return WrittenProgram(main.name, first.tool_mm_deg, first.base_mm_deg, holes, tuple(head), tail, sizes)
-
-
-def parts_called(text: str, file: str = "program") -> tuple[str, ...]:
-    """The names of the parts that a program calls; none where it moves the robot itself.
-
-    Raises:
-        InputError: a statement that `export` does not write.
-    """
-    reading, found = _Reading(file), list[str]()
+    reading = _Reading(file)
     for statement in statements(text, reading.refuse_at):
         reading.take(statement)
-        if reading.settings:
-            return ()
-        if statement.words[1:] == ("(", ")") and statement.words[0] == part_name(reading.name, len(found) + 1).upper():
-            found.append(part_name(reading.name, len(found) + 1))
-    return tuple(found)
-
-
-def _short(path: str) -> str:
-    return re.split(r"[/\\]", path)[-1]
-
-
-def _in_file(statement: Statement, file: str) -> Statement:
-    return replace(statement, file=file)
+        if reading.settings or reading.hole:
+            return None
+    return (reading.name, tuple(reading.head)) if reading.ended else None
 
 
 @dataclass
