@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from oracles.holes import ROBOTS, random_hole
+from zerorev.collision import moves
 from zerorev.collision.moves import EXACT, nearest
 from zerorev.collision.shapes import BODIES, capsules_of
 from zerorev.motion.kinematics import forward
@@ -96,3 +97,30 @@ def test_a_sheet_is_passed_by_and_is_met():
             assert -0.005 - 1e-12 <= found.clearance <= 0
         else:
             assert found.clearance == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_ends_move_as_fast_as_is_said_and_bend_no_more(seed):
+    """By differences along a move."""
+    rng = np.random.default_rng(seed)
+    drilled = random_hole(seed)
+    robot, capsules = drilled.robot, capsules_of(drilled.robot, drilled.tool)
+    move = rng.uniform(-2, 2, (1, 2, 6))
+    turn = move[:, 1] - move[:, 0]
+    planes = np.concatenate([rng.normal(size=(1, 2, 3)), rng.normal(size=(1, 2, 1))], axis=2)
+    planes[..., :3] /= np.linalg.norm(planes[..., :3], axis=-1, keepdims=True)
+    share, step = np.linspace(0.01, 0.99, 99), 1e-4
+
+    def behind(at):
+        joints = move[0, 0] + at[:, None] * turn
+        return moves._behind(robot, capsules, joints, np.repeat(planes, len(at), axis=0))
+
+    before, here, after = (behind(share + by) for by in (-step, 0.0, step))
+    joints = move[0, 0] + share[:, None] * turn
+    many = np.repeat(turn, 99, axis=0), np.repeat(planes, 99, axis=0)
+    rates = moves._rates(robot, capsules, joints, *many)
+    np.testing.assert_allclose(rates, (after - before) / (2 * step), rtol=0, atol=1e-5 * robot.size)
+    _, bend = moves._sweep(np.abs(turn), capsules)
+    bent = np.abs(after - 2 * here + before).max(axis=(0, 3)) / step**2
+    assert (bent <= bend[0] * (1 + 1e-6)).all()
+    assert (bent > 0.01 * bend[0]).any()

@@ -27,11 +27,13 @@ class Capsules:
     Attributes:
         ends: of their lines, in the flange frame [m], shape (3, 2, 3); rows as in `BODIES`.
         radius: [m], shape (3,). Drill and tool are lines, since no file says how thick they are.
+        tool: that ends in the first of them.
         reach: no end is farther than this from each axis, for any joints between [m], shape (3, 2, 6).
     """
 
     ends: Array
     radius: Array
+    tool: Tool
     reach: Array
 
 
@@ -48,7 +50,7 @@ def capsules_of(robot: Robot, tool: Tool) -> Capsules:
     foot = tip + max(-float(tip @ back), 0.0) * back
     ends = np.array([[tip, foot], [foot, flange], [flange, wrist]])
     radius = np.array([0.0, 0.0, WRIST_RADIUS * abs(arm.c4)])
-    return Capsules(ends, radius, _reach(robot, ends))
+    return Capsules(ends, radius, tool, _reach(robot, ends))
 
 
 def _reach(robot: Robot, points: Array) -> Array:
