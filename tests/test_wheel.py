@@ -26,6 +26,8 @@ EXTRAS = ("matplotlib", "flint", "xarray", "zarr", "plotly", "distributed", "jin
 # a command, and the extra that it names where that is missing
 NEEDING = (
     ("plan plate.yaml --figures pictures", "figures"),
+    ("plan plate.yaml --report page.html", "report"),
+    ("check plate.json --report page.html", "report"),
     ("offset plate.yaml --figure picture.png", "figures"),
     ("place plate.yaml --z-mm=-10:10 --figures pictures", "figures"),
     ("methods plate.yaml --figure picture.png", "figures"),

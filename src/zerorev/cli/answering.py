@@ -23,7 +23,7 @@ from zerorev.report.words import terminal
 from zerorev.report.words.answer import Shown, minutes
 from zerorev.workers import Machines
 
-__all__ = ["Pictures", "run"]
+__all__ = ["Pictures", "run", "write_report"]
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,17 @@ class Pictures:
     Attributes:
         figures: folder for the figures of holes; None: none.
         of: ids of the holes that are drawn there; None: all.
+        report: where to write the plan as one page; None: nowhere.
+        source: the file that the page names as where it comes from.
     """
 
     figures: Path | None = None
     of: tuple[str, ...] | None = None
+    report: Path | None = None
+    source: str = ""
 
     def __bool__(self) -> bool:
-        return self.figures is not None
+        return self.figures is not None or self.report is not None
 
     def draw(self, plan: Plan, processes: int | None) -> list[str]:
         """Draw them.
@@ -59,7 +63,25 @@ class Pictures:
             with terminal.progress("drawing", count) as progress:
                 write_figures(plan, self.figures, progress, ids=self.of, machines=Machines(processes))
             written.append(f"figures written to {self.figures}")
+        if self.report is not None:
+            written.append(write_report(plan, self.report, self.source))
         return written
+
+
+def write_report(plan: Plan, target: Path, source: str) -> str:
+    """Write a plan as one page, and say so.
+
+    Args:
+        plan: with its holes.
+        target: where to.
+        source: the file that it comes from.
+    """
+    from zerorev.files.output import write_text
+    from zerorev.report.figures.plan_report import plan_report
+
+    with terminal.busy("writing the report"):
+        write_text(target, plan_report(plan, source))
+    return f"report written to {target}"
 
 
 def run(

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zerorev.cli.common import FINE, FOUND, Whole, app, need
+from zerorev.cli.common import FINE, FOUND, Whole, app, check_outputs, need, need_report
 from zerorev.cli.proofs import Proofs
 from zerorev.cli.tolerances import Tolerances
 from zerorev.errors import InputError
@@ -31,6 +31,7 @@ def check(
     tolerance_ratio: float | None = None,
     proof: bool = False,
     proof_sample: Whole | None = None,
+    report: Path | None = None,
     json: bool = False,
 ) -> int:
     """Check a plan again, from the robot, the tool and the holes that it states.
@@ -54,6 +55,8 @@ def check(
         proof: Check what the plan states of its optimality, and of its deepest strokes: search again with a log of all
             that the search leaves out, and check the log box by box in ball arithmetic. A hole takes minutes.
         proof_sample: With --proof: check so many boxes of each log, at random, instead of all.
+        report: Page with everything about the checked plan to write (HTML), to be printed or filed; it needs no
+            network.
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
             of each hole of the program; with --proof, `proofs` besides.
     """
@@ -69,6 +72,8 @@ def check(
     proofs.check(program=program is not None)
     if certify or proof:
         need("flint", "python-flint", "--certify" if certify else "--proof", "certify")
+    check_outputs((report,), plan, *([] if program is None else [program]))
+    need_report(report)
     if certify and program is None:
         check_file(plan)
     text = plan_text(plan)
@@ -101,6 +106,10 @@ def check(
         remember(plan_text(plan))
     answer = checked.marked() if certify else without_proofs(checked.marked())
     found = proofs.checked(checked.plan)
+    if report is not None:
+        from zerorev.cli.answering import write_report
+
+        said = write_report(answer, report, plan.name)
     if json and program is not None:
         terminal.print_json(_proofs(plan_to_json(answer), written.name))
     elif json:
@@ -112,6 +121,8 @@ def check(
         elif certify:
             terminal.say(f"check and certificates written into {plan}")
         proofs.show(found)
+        if report is not None:
+            terminal.say(said)
     return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
 
 

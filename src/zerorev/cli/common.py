@@ -32,6 +32,7 @@ __all__ = [
     "map_app",
     "need",
     "need_maps",
+    "need_report",
     "numbers",
     "recordings_app",
 ]  # fmt: skip
@@ -151,6 +152,12 @@ def machines(workers: int | None, scheduler: str | None) -> Machines:
     if scheduler is not None:
         need("distributed", "dask.distributed", "--scheduler", "cluster")
     return Machines(workers, scheduler)
+
+
+def need_report(report: Path | None) -> None:
+    """Refuse a report where the packages for it are not installed."""
+    for module in ("jinja2", "matplotlib") if report is not None else ():
+        need(module, module, "--report", "report")
 
 
 def need_maps(command: str) -> None:

@@ -6,7 +6,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines, need
+from zerorev.cli.common import FINE, FOUND, Output, app, check_outputs, job_of, machines, need, need_report
 from zerorev.cli.instead import Instead, given
 from zerorev.errors import InputError
 
@@ -24,6 +24,7 @@ def plan(
     output: Output = None,
     figures: Path | None = None,
     figures_of: str | None = None,
+    report: Path | None = None,
     workers: int | None = None,
     scheduler: str | None = None,
     json: bool = False,
@@ -39,6 +40,7 @@ def plan(
         output: Where to write the plan (JSON). Without it the answer is only shown.
         figures: Folder for three pictures a hole; it is made if its parent exists.
         figures_of: Ids of the only holes to draw, with commas between them.
+        report: Page with everything about the plan to write (HTML), to be printed or filed; it needs no network.
         workers: Processes to plan and draw on; by default all cores where the job is large enough. What comes out is
             the same.
         scheduler: Address of a dask.distributed scheduler to run it on instead, e.g. tcp://10.0.0.1:8786.
@@ -47,7 +49,8 @@ def plan(
     """
     from zerorev.files.output import check_folder
 
-    check_outputs((output,), job)
+    check_outputs((output, report), job)
+    need_report(report)
     if figures is not None:
         need("matplotlib", "matplotlib", "--figures", "figures")
         check_folder(figures)
@@ -57,7 +60,7 @@ def plan(
 
     from zerorev.cli.answering import Pictures, run
 
-    pictures = Pictures(figures, None if figures_of is None else _chosen(figures_of, wanted))
+    pictures = Pictures(figures, None if figures_of is None else _chosen(figures_of, wanted), report, job.name)
     return FINE if run(wanted, "asked", output, machines(workers, scheduler), json=json, pictures=pictures) else FOUND
 
 
