@@ -176,10 +176,9 @@ def _short_moves(program: Program) -> tuple[Finding, ...]:
 
 def calls(settings: Settings) -> tuple[Finding, ...]:
     """Which programs of the controller are called where: nobody here knows what they do."""
-    return tuple(
-        Finding("info", "calls", f"calls {', '.join(map(str, called))} {place}: what that does is not examined")
-        for place, called in settings.calls.places()
-    )
+    places = [f"{', '.join(map(str, called))} {place}" for place, called in settings.calls.places()]
+    message = f"calls {'; '.join(places)}: what these programs do is not examined"
+    return (Finding("info", "calls", message),) if places else ()
 
 
 def _unchecked(program: Program) -> tuple[Finding, ...]:
