@@ -157,7 +157,10 @@ READERS = [
     ["methods", "{}"],
     ["place", "{}", "--x-mm=-1:1"],
     ["share", "job.yaml", "{}"],
+    ["compare", "{}", "plan.json"],
+    ["compare", "job.yaml", "{}"],
     ["check", "{}"],
+    ["check", "{}", "--report", "r.html"],
     ["check", "plan.json", "--certify", "--program", "{}"],
     ["export", "{}"],
     ["replay", "{}", "-o", "r.html"],
@@ -165,6 +168,7 @@ READERS = [
     ["view", "{}", "--no-browser"],
     ["view", "plan.json", "--no-browser", "--urdf", "{}"],
     ["map", "{}", "-o", "m.zarr"],
+    ["map", "--around", "{}", "-o", "m.zarr"],
     ["parameter-map", "{}", "-o", "m.zarr"],
 ]
 

@@ -152,6 +152,12 @@ class TestCommand:
         assert main(["compare", str(files / "one.yaml")]) == cli.BAD_INPUT
         assert "zerorev methods JOB.yaml" in capsys.readouterr().err
 
+    def test_both_files_are_read_before_either_is_planned(self, files, capsys, monkeypatch):
+        monkeypatch.setattr("zerorev.planning.job.plan_job", lambda *_, **__: pytest.fail("planned"))
+        capsys.readouterr()
+        assert main(["compare", str(files / "one.yaml"), str(files / "none.yaml")]) == cli.BAD_INPUT
+        assert "none.yaml" in capsys.readouterr().err
+
     def test_another_kind_of_file(self, files, capsys):
         (files / "tool.yaml").write_text("format: zerorev.tool/1\n")
         assert main(["compare", str(files / "one.yaml"), str(files / "tool.yaml")]) == cli.BAD_INPUT

@@ -10,6 +10,7 @@ from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
+    from zerorev.model.job import Job
     from zerorev.model.plan import Plan
 
 __all__ = ["compare"]
@@ -36,7 +37,9 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
             accepted=f"zerorev compare FIRST SECOND, each {ACCEPTED}; search methods at the holes of one job are set "
             "side by side by zerorev methods JOB.yaml",
         )  # fmt: skip
-    plans = [_plan(path, workers) for path in (first, second)]
+    paths = first, second
+    read = [_read(path) for path in paths]  # both, before either is planned
+    plans = [_planned(found, path, workers) for found, path in zip(read, paths, strict=True)]
 
     from zerorev.planning.compared import compared
     from zerorev.report.words import plan_comparison as shown
@@ -52,8 +55,8 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
     return FINE if all(Shown(plan, plan.holes).sound for plan in plans) else FOUND
 
 
-def _plan(path: Path, workers: int | None) -> Plan:
-    """The plan of a file, or of the job in it."""
+def _read(path: Path) -> Plan | Job:
+    """The plan or the job of a file."""
     from zerorev.files.io import plan_from_text
     from zerorev.files.other_kinds import is_plan
     from zerorev.files.text import read_text
@@ -61,11 +64,18 @@ def _plan(path: Path, workers: int | None) -> Plan:
     text = read_text(path, ACCEPTED)
     if is_plan(text, path.name):
         return plan_from_text(text, str(path))
+    return job_of(path)
+
+
+def _planned(found: Plan | Job, path: Path, workers: int | None) -> Plan:
+    """The plan itself, or that of a job."""
+    from zerorev.model.plan import Plan
     from zerorev.planning.job import plan_job
 
-    job = job_of(path)
-    with terminal.progress(f"planning {path.name}", len(job.holes)) as progress:
-        return plan_job(job, progress, workers=workers)
+    if isinstance(found, Plan):
+        return found
+    with terminal.progress(f"planning {path.name}", len(found.holes)) as progress:
+        return plan_job(found, progress, workers=workers)
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
