@@ -92,7 +92,7 @@ def test_the_panel_of_a_hundred_holes(tmp_path):
     found = [(finding.kind, finding.hole) for finding in plan.all_findings if finding.kind not in of_loads]
     assert found == [("unreachable", "R9C0")]
     program = zerorev.export(plan, "krl", skip_failed=True)
-    assert program.text.count("PTP {AXIS") == 99
+    assert program.text.count(";FOLD Hole ") == 99
 
 
 @pytest.mark.parametrize(
@@ -106,4 +106,4 @@ def test_job_is_planned_checked_and_exported(job, tmp_path):
         ["export", os.fspath(plan), "--controller", "krl", "-o", os.fspath(program)],
     ):
         assert main(arguments) == FINE
-    assert program.read_text().count("PTP {AXIS") == 3
+    assert program.read_text().count(";FOLD Hole ") == 3

@@ -319,6 +319,16 @@ def test_a_file_of_somebody_else_is_not_replaced(tmp_path, plan_of, published):
     assert [path.name for path in sorted(tmp_path.iterdir())] == ["PANEL.SRC", "plan.json"]
 
 
+def test_what_is_not_a_file_is_not_opened(tmp_path, plan_of, published):
+    plan = tmp_path / "plan.json"
+    write_plan(plan_of(published(1), name="panel"), plan)
+    os.mkfifo(tmp_path / "panel.src")
+    assert exported_beside(plan) == 2
+    os.remove(tmp_path / "panel.src")
+    (tmp_path / "panel.src").mkdir()
+    assert exported_beside(plan) == 2
+
+
 def test_long_names_that_end_otherwise_are_two_programs(tmp_path, plan_of, published):
     for station in (100, 200):
         plan = tmp_path / f"{station}.json"

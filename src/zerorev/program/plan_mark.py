@@ -48,7 +48,12 @@ def check_replaceable(folder: Path, names: Iterable[str], mark: str, cure: str) 
     with as_output_error(folder):
         there = sorted(path for path in folder.iterdir() if path.name.lower() in wanted)
     for path in there:
-        with as_output_error(path), path.open("rb") as stream:
-            found = _MARKED.search(stream.read(_HEAD))
+        with as_output_error(path):
+            found = _MARKED.search(_begin(path)) if path.is_file() else None
         if found is None or found[1].decode() != mark:
             raise OutputError(str(path), f"it is there, and it is not known to be a program of this plan; {cure}")
+
+
+def _begin(path: Path) -> bytes:
+    with path.open("rb") as stream:
+        return stream.read(_HEAD)
