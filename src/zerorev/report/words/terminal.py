@@ -35,7 +35,7 @@ __all__ = [
     "say",
 ]
 
-PIPED_WIDTH = 160  # columns of a table that goes to no terminal
+PIPED_WIDTH = 180  # columns of a table that goes to no terminal
 SECONDS_BETWEEN_LINES = 10.0
 
 
