@@ -43,7 +43,7 @@ def answers(published, robot, tool, positions):
     margins = np.array([0.02, 0.01, 0.01])
     placed = Placement(
         np.array([0, -0.02, -0.2, 0]), margins, margins - 0.1, grid, np.full([axis.size for axis in grid], np.nan),
-        np.array([[-0.01, 0.02]] * 4), (pictured,), 17, True,
+        np.array([[-0.01, 0.02]] * 4), slices=(pictured,), strokes=17, finished=True,
     )  # fmt: skip
     workspace = made_map(
         robot, tool, ([300, 400], [-100, 0, 100], [600, 700]), WAYS,
