@@ -23,7 +23,7 @@ def random_cells(rng, drilled, posture):
     columns, slabs = int(2.0 ** rng.integers(4, 14)), 4
     edges = np.sort(rng.uniform(0, 0.2, 1)) + np.arange(slabs + 1) * 10.0 ** rng.uniform(-5, -1.5)
     grid = Grid(-np.pi, 2 * np.pi / columns, columns, True, edges)
-    lower, upper = model_limits(robot)
+    lower, upper = model_limits(Drilling(robot, tool, hole))
     rules = Constraints(lower, upper, float(rng.choice([0.0, np.deg2rad(10.0)])), steepest=CAP)
     plane = Drilling(robot, tool, hole).plane
     formulas = cell_formulas(robot.arm, plane, posture, (True,) * 6)
@@ -181,7 +181,7 @@ class TestCells:
             branch, sign = 0 if robot.arm.sign[4] > 0 else 1, np.array(robot.arm.sign)
             plane = Drilling(robot, tool, hole).plane
             grid = Grid(-np.pi, 2 * np.pi / 8192, 8192, True, np.array([1e-3, 1.1e-3]))
-            rules = Constraints(*model_limits(robot), 0.0, steepest=CAP)
+            rules = Constraints(*model_limits(Drilling(robot, tool, hole)), 0.0, steepest=CAP)
             column = rng.integers(0, 8192, LANES)
             flips, raw = np.full(LANES, 3), np.empty((LANES, 6, outer_cells.RAW))
             formulas = cell_formulas(robot.arm, plane, 0, (False,) * 6)

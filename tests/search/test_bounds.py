@@ -28,8 +28,8 @@ THESIS = (([0.5, 0.3, 0.8], 0.05), ([0.2, 0.4, 0.6], 0.02), ([0.2, 0.2, 1.0], 0.
 
 
 def rules_of(drilled, *, min_rate, most_cost=80.0, samples=8):
-    robot, _, hole, settings = drilled.all
-    lower, upper = model_limits(robot)
+    _, _, hole, settings = drilled.all
+    lower, upper = model_limits(drilled.both[0])
     weights = np.array(settings.reversal_weights)
     bound = settings.psi_bound or 0.0
     return BoundRules(
@@ -159,7 +159,7 @@ def check_weights(rng, drilled):
 
 def within_limits(drilled, leg):
     """Whether some turns keep a leg within the limits, on either wrist flip."""
-    lower, upper = model_limits(drilled.robot)
+    lower, upper = model_limits(drilled.both[0])
     out = []
     for flip in range(2):
         angles = leg["angles"].copy()

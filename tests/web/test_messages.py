@@ -75,7 +75,7 @@ def test_all_that_is_said_is_said_in_full_and_can_be_read(demo_page, tmp_path):
     legible(page)
     plan = json.loads(saved(page, "save-incomplete"))
     assert [hole["id"] for hole in plan["holes"]] == ["position_1"]
-    assert [finding["kind"] for finding in plan["findings"]] == ["unfinished"]
+    assert [finding["kind"] for finding in plan["findings"]] == ["unfinished", "tool_turn"]
 
     from_menu(page, "download-krl")
     dialog = page.get_by_test_id("preflight")

@@ -30,7 +30,7 @@ def test_every_joint_has_every_speed(sweeps):
 
 def test_the_text_moves_one_axis_at_a_time_within_its_limits(sweeps):
     text = sweeps_to_krl(sweeps, "my sweeps")
-    assert "DEF my_sweeps ( )" in text
+    assert "DEF my_sweeps_" in text
     lines = re.findall(r"(?m)^PTP \{AXIS: (.*)\}$", text)
     axes = np.array([[float(part.split()[1]) for part in line.split(",")] for line in lines])
     assert len(axes) == 1 + sum(2 * sweep.cycles + 1 for sweep in sweeps.sweeps)
