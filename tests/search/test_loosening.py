@@ -84,6 +84,15 @@ def test_a_hole_just_deeper_than_the_deepest_stroke():
     assert what_is_worse(*pairs(1074, proof_boxes=LITTLE)["threshold"]) == []
 
 
+def test_no_motion_is_beyond_the_bound_on_the_spin():
+    """A deepest motion made as deep as the hole once was, so that a wider bound seemed to make the answer worse."""
+    tight, loose = pairs(1082, proof_boxes=LITTLE)["spin bound"]
+    for asked in (tight, loose):
+        found = optimum(*asked.both).motion
+        assert np.abs(found.profile.psi).max() <= asked.settings.psi_bound * (1 + 1e-9)
+    assert what_is_worse(tight, loose) == []
+
+
 @pytest.mark.long
 def test_some_holes():
     assert compared(range(8, 14), proof_boxes=LITTLE)[0] == []

@@ -19,6 +19,7 @@ __all__ = ["cut_short", "descended", "eased", "steadied"]
 POINTS = 33  # of a leg at which the joints are examined
 SAME_MARGIN = 1e-6  # relative
 ENOUGH_LACK = 1e-6  # [rad/m]
+ENOUGH_BOUND = 1e-9  # relative, of the bound on the spin
 GUARDS = tuple((LEAST_RATE * np.array([0.0, 10.0, 1e4, 1e6])).tolist())  # [rad/m] for what lies between them
 
 
@@ -108,4 +109,7 @@ def _moved(
     moved, lack = improved(robot.arm, plane, branch, sense, rules, legs, goal or settings.objective, samples=POINTS)
     if lack > ENOUGH_LACK:
         return None
-    return order.candidate(motion_of(moved, periodic=settings.psi_bound is None), branch)
+    profile, bound = motion_of(moved, periodic=settings.psi_bound is None), settings.psi_bound
+    if bound is not None and np.abs(profile.psi).max() > bound * (1 + ENOUGH_BOUND):
+        return None  # what the steps set out from was beyond the bound, and they have not brought it back
+    return order.candidate(profile, branch)
