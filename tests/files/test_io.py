@@ -202,6 +202,7 @@ BAD_JOBS: dict[str, tuple[str, str, list[str]]] = {
     "tab": ("blend_mm: 2", "\tblend_mm: 2", ["line 4", "job.yaml"]),
     "alias": ("blend_mm: 2", "blend_mm: *two", ["line 4", "aliases"]),
     "tag": ("blend_mm: 2", "blend_mm: !!python/name:os.system", ["line 4", "tag"]),
+    "tag of a key": ("blend_mm: 2", "!!python/name:os.system blend_mm: 2", ["line 4", "tag"]),
     "control character": ("blend_mm: 2", "blend_mm: \x01", ["line 4", "control character"]),
     "a line break in an id": ("id: second", 'id: "a\\nb"', ["holes[1].id", "one line"]),
 }  # fmt: skip

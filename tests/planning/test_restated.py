@@ -69,7 +69,7 @@ MAY_CHANGE = {
     "settings.feed_mm_s.plunge", "settings.objective", "settings.objective.travel", "settings.objective.limit_distance",
     "settings.joint_stiffness_nm_per_rad", "settings.legs",
     # of a plan of one hole, which has no moves between holes
-    "settings.clearance_mm", "settings.safe_height_mm", "settings.part_thickness_mm",
+    "settings.clearance_mm", "settings.safe_height_mm", "settings.part_thickness_mm", "settings.posture_freedom",
     # a budget that the proof ends within
     "settings.proof_boxes",
     # of a hole that is out of reach

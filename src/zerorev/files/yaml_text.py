@@ -135,6 +135,7 @@ class _Reading:
         while not isinstance(event := self._next(), MappingEndEvent):
             if not isinstance(event, ScalarEvent):
                 _refuse("a key that is not text", event)
+            _check_tag(event, "str")
             key = event.value
             if key in found:
                 _refuse(f"the key '{key}' is used twice", event)
@@ -144,7 +145,7 @@ class _Reading:
         return found
 
 
-def _check_tag(event: SequenceStartEvent | MappingStartEvent, kind: str) -> None:
+def _check_tag(event: SequenceStartEvent | MappingStartEvent | ScalarEvent, kind: str) -> None:
     if event.tag not in (None, "!", _TAG + kind):
         _refuse(f"the tag {event.tag} is not read", event)
 
