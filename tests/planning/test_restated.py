@@ -393,3 +393,20 @@ def test_a_file_that_is_marked_and_mended(edited_file, files, capsys):
     assert main(["check", "--certify", str(edited_file)]) == cli.FOUND
     assert "verified.passed: stated false, found true" in capsys.readouterr().out
     assert main(["check", str(edited_file)]) == cli.FINE
+
+
+def test_a_warning_that_an_older_version_did_not_know_is_not_missed(files):
+    """A file with none of that kind may be older; one that states it has to state it rightly."""
+    data = files("straight")
+    plan = plan_from_text(json.dumps(data), "plan")
+    near = [finding for finding in plan.all_findings if finding.kind in ("near_limit", "tool_turn")]
+    assert near, "a plan that shows nothing"
+    without = json.loads(json.dumps(data))
+    for place in (without, *without["holes"]):
+        place["findings"] = [each for each in place["findings"] if each["kind"] not in ("near_limit", "tool_turn")]
+    assert refusals(without) == []
+    for place in (data, *data["holes"]):
+        for each in place["findings"]:
+            if each["kind"] in ("near_limit", "tool_turn"):
+                each["message"] += " or so"
+    assert refusals(data)

@@ -37,6 +37,7 @@ class Field(NamedTuple):
 
 # the digits of a file, and of the two ways in which a figure is computed
 DIGITS = 1e-9
+CLEARANCE = 0.02  # [mm]: it is found to 0.01 mm
 # of the least rate: planning narrows a dip down until it falls by less than 1e-6 of the rate between samples
 DIP = 2e-6
 # [deg/mm] on an arm of size 1: a joint that is slower than half of this does not move (conventions: signature)
@@ -73,7 +74,7 @@ HEAD_FIELDS: dict[str, Field] = {
     "transitions.time_s": Field("figure", DIGITS, 1e-6),
     "transitions.changes_posture": _EXACT,
     "transitions.largest_axis_move_deg": Field("figure", DIGITS, 1e-5),
-    "transitions.clearance_mm": Field("figure", DIGITS, 1e-5, optional=True),
+    "transitions.clearance_mm": Field("figure", DIGITS, CLEARANCE, optional=True),
     "transitions.findings": Field("finding"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),

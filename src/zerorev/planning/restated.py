@@ -19,7 +19,7 @@ from zerorev.files.plan_data import answer_data, sequence_data
 from zerorev.files.plan_differences import differ, fields_differ, findings_differ, leaves
 from zerorev.files.plan_fields import HEAD_FIELDS
 from zerorev.files.units import deg_per_mm, mm
-from zerorev.model.finding import Finding
+from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
@@ -43,6 +43,7 @@ __all__ = ["Checked", "check_hole", "check_plan"]
 
 BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
 OF_A_PROOF = "tolerance"  # one that a certificate adds
+LATER: tuple[FindingKind, ...] = ("near_limit", "tool_turn")  # which files of an older version do not have
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
     moves = moves_of(stated)
     time = time_of((hole.cycle_time for hole in stated.holes), moves)
     again = with_tool_turn(replace(stated, transitions=moves, cycle_time=time, findings=found))
-    yield from findings_differ(said, again.findings)
+    yield from findings_differ(said, _but(again.findings, *_later(said)))
     data = sequence_data(stated), sequence_data(again)
     wrong = list(fields_differ(*data, {}, fields=HEAD_FIELDS))
     of_moves = ([finding for move in each.transitions for finding in move.findings] for each in (stated, again))
@@ -209,7 +210,8 @@ def check_hole(
     said = [*motion_findings(drilling, settings, replace(found, verified=verified)), *searched.elements()]
     digits = cache(partial(_slack, robot, tool, settings, stated, own))
     differences = _fields_differ(robot, stated, found, digits)
-    unsaid = (OF_A_PROOF, *(() if verified.passed else ("verification",)))  # what fails is said already
+    # what fails is said already
+    unsaid = (OF_A_PROOF, *_later(stated.findings), *(() if verified.passed else ("verification",)))
     differences += findings_differ(_but(stated.findings, *unsaid), _but(said, *unsaid))
     differences += _asked_differs(robot, settings, stated, deepest)
     if own is not None:
@@ -274,6 +276,11 @@ def _slack(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan, own: 
 def _comparable(stated: Verification, found: Verification, fails: bool) -> Verification:
     """The outcome of the check; where something fails, that is said already, regardless of what was stated of it."""
     return replace(found, passed=stated.passed, failures=stated.failures) if fails else found
+
+
+def _later(stated: Iterable[Finding]) -> set[str]:
+    """Of the kinds that an older version did not know those of which nothing is stated: they are not missed."""
+    return set[str](LATER) - {finding.kind for finding in stated}
 
 
 def _but(findings: Iterable[Finding], *kinds: str) -> tuple[Finding, ...]:
