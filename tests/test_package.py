@@ -92,6 +92,8 @@ def test_the_panel_of_a_hundred_holes(tmp_path):
     found = [(finding.kind, finding.hole) for finding in plan.all_findings if finding.kind not in of_many]
     assert found == [("unreachable", "R9C0")]
     assert {finding.level for finding in plan.all_findings if finding.kind in of_many} == {"info", "warning"}
+    assert min(move.clearance for move in plan.transitions) > -2e-5
+    assert not any(move.changes_posture for move in plan.transitions)
     program = zerorev.export(plan, "krl", skip_failed=True)
     assert program.text.count(";FOLD Hole ") == 99
 

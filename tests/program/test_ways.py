@@ -194,7 +194,7 @@ def test_the_panel_as_it_was_run_before():
     """Case c01: each hole with its own best motion, straight from one to the next: 5 moves go through the panel.
 
     So version 0.1.0 planned it, of which a script sampled the tip: at most 179 mm behind the holes' ends, from R0C3 to
-    R0C4. By default none does.
+    R0C4. That by default none does is tested beside all else of the panel (tests/test_package.py).
     """
     job = zr.read_job(PANEL)
     as_before = replace(job.settings.without_proof, posture_freedom=0.0, safe_height=0.0)
@@ -207,5 +207,3 @@ def test_the_panel_as_it_was_run_before():
     assert through <= {(move.start, move.to) for move in found.transitions if any(
         finding.kind == "through_part" for finding in move.findings
     )}  # fmt: skip
-    now = plan_job(replace(job, settings=job.settings.without_proof))
-    assert min(move.clearance for move in now.transitions) > -2e-5
