@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -61,7 +61,9 @@ def retract_of(plan: Plan, hole_id: str, plan_file: str = "") -> Retract:
         NotExportableError: the hole must not be exported; the tool cannot be brought out straight from anywhere on it.
     """
     number = number_of(plan, hole_id, "retract")
-    program = build_program(plan, only=[hole_id], plan_file=plan_file)
+    # no move to the hole or away from it is made, so none is refused
+    alone = replace(plan, settings=replace(plan.settings, home_joints=None))
+    program = build_program(alone, only=[hole_id], plan_file=plan_file)
     (hole,) = program.holes
     places = [hole.start.standoff, hole.moves[-1].standoff, hole.depth + BEYOND]
     answer = plan.holes[number - 1]

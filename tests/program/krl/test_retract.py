@@ -245,3 +245,14 @@ def test_a_part_is_certified_hole_by_hole(four, tmp_path):
     drilled = as_exported(four, program, KRL, "panel_only_2_3")
     verdicts = [hole.certificate.verdict for hole in certify_program(four, program, drilled).holes]
     assert verdicts == ["refuted", "certified", "certified", "refuted"]
+
+
+def test_a_home_position_beyond_the_part_does_not_keep_the_drill_in_the_hole(published, plan_of):
+    """The program makes no move to the hole or away from it, so that none of them can refuse it."""
+    plan = plan_of(published(1))
+    beside = tuple(np.deg2rad([-60.0, -60, 60, 0, 0, 0]))
+    through = replace(plan, settings=replace(plan.settings, home_joints=beside, safe_height=0.0))
+    with pytest.raises(NotExportableError, match="home position"):
+        export(through)
+    (hole,) = plan.holes
+    assert retract_program(through, hole.hole.id).text == retract_program(plan, hole.hole.id).text
