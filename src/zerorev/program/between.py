@@ -139,19 +139,29 @@ def moves_between(robot: Robot, tool: Tool, settings: Settings, stops: Sequence[
     if settings.part_thickness == 0:
         return tuple(_transition(robot, settings, leg, None, ()) for leg in legs)
     part = _Part(robot, capsules_of(robot, tool), settings.part_thickness)
-    through = _raised(part, settings, legs)
     closest = part.nearest(legs, part.capsules)
+    through = _raised(part, settings, legs, closest)
     return tuple(
         _transition(robot, settings, leg, near.clearance, _findings(part, settings, leg, near, through.get(k)))
         for k, (leg, near) in enumerate(zip(legs, closest, strict=True))
     )
 
 
-def _raised(part: _Part, settings: Settings, legs: list[_Leg]) -> dict[int, Nearest]:
-    """Replace the moves that dip behind the surface by such as rise over it, in place; those that dip all the same."""
-    lines = part.lines
-    dips = {k: near for k, near in enumerate(part.nearest(legs, lines)) if near.clearance < -SLACK}
-    size = part.robot.size
+def _raised(part: _Part, settings: Settings, legs: list[_Leg], closest: list[Nearest]) -> dict[int, Nearest]:
+    """Replace the moves that dip behind the surface by such as rise over it, in place; those that dip all the same.
+
+    Args:
+        part: what must not be touched.
+        settings: with the safe height.
+        legs: the moves.
+        closest: where each comes nearest, the thickness of the bodies included; replaced likewise.
+    """
+    lines, size = part.lines, part.robot.size
+    # a line is no nearer to the part than what is thick about it; both are found to `EXACT`
+    maybe = [k for k, near in enumerate(closest) if near.clearance < EXACT - SLACK]
+    bare = part.nearest([legs[k] for k in maybe], lines)
+    dips = {k: near for k, near in zip(maybe, bare, strict=True) if near.clearance < -SLACK}
+    dipped = list(dips)
     for rise in () if settings.safe_height == 0 else RISES:
         if rise * size <= (settings.safe_height or 0.0):
             continue
@@ -160,6 +170,9 @@ def _raised(part: _Part, settings: Settings, legs: list[_Leg]) -> dict[int, Near
             if near.clearance >= -SLACK:
                 legs[k] = leg
                 del dips[k]
+    raised = [k for k in dipped if k not in dips]
+    for k, near in zip(raised, part.nearest([legs[k] for k in raised], part.capsules), strict=True):
+        closest[k] = near
     return dips
 
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import base64
 from collections import Counter
 from collections.abc import Iterable
 from importlib.metadata import version
 from typing import Any, NamedTuple
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from zerorev.model.plan import HolePlan, Plan
@@ -16,6 +14,7 @@ from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.part_view import part_view
 from zerorev.report.figures.plane import twist_plane
 from zerorev.report.figures.style import png
+from zerorev.report.templates import environment
 from zerorev.report.words.answer import sequence_line
 from zerorev.report.words.plan_facts import (
     all_findings,
@@ -54,37 +53,32 @@ def plan_report(plan: Plan, source: str) -> str:
         plan: what was found.
         source: the file that it comes from, as the page names it.
     """
-    environment = Environment(
-        loader=PackageLoader("zerorev.report.figures", "."),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=_shown,
-    )
-    environment.filters["base64"] = lambda data: base64.b64encode(data).decode("ascii")
     found = all_findings(plan)
     levels = Counter(finding.level for finding in found)
     worst = worst_holes(plan)
     drawn = [hole for hole in worst if hole.motion is not None][:DRAWN]
-    return environment.get_template("plan_report.html.j2").render(
-        version=version("zerorev"),
-        title=plan.name,
-        kind="Drilling plan" if plan.strokes == "asked" else "Deepest strokes",
-        source=source,
-        verdict=verdict(plan, levels["error"]),
-        summary=summary_facts(plan, levels),
-        asked=(("Job", job_facts(plan)), ("Robot", robot_facts(plan)), ("Tool", tool_facts(plan))),
-        settings=settings_rows(plan.settings),
-        worst=[(hole.hole.id, why_bad(plan, hole)) for hole in worst[:LISTED]],
-        findings=grouped(found),
-        overview=Picture(png(part_view(plan)), "Holes on the part, and the way from one to the next"),
-        pictures=[picture for hole in drawn for picture in _pictures(plan, hole)],
-        rows=[table_row(plan, hole, n) for n, hole in enumerate(plan.in_order, 1)],
-        weighed=any(hole.lost_motion is not None for hole in plan.holes),
-        notes=hole_notes(plan),
-        moves=[move_row(move) for move in plan.transitions],
-        sequence=sequence_line(plan.transitions, plan.cycle_time) if plan.transitions else "",
+    return (
+        environment("zerorev.report.figures", _shown)
+        .get_template("plan_report.html.j2")
+        .render(
+            version=version("zerorev"),
+            title=plan.name,
+            kind="Drilling plan" if plan.strokes == "asked" else "Deepest strokes",
+            source=source,
+            verdict=verdict(plan, levels["error"]),
+            summary=summary_facts(plan, levels),
+            asked=(("Job", job_facts(plan)), ("Robot", robot_facts(plan)), ("Tool", tool_facts(plan))),
+            settings=settings_rows(plan.settings),
+            worst=[(hole.hole.id, why_bad(plan, hole)) for hole in worst[:LISTED]],
+            findings=grouped(found),
+            overview=Picture(png(part_view(plan)), "Holes on the part, and the way from one to the next"),
+            pictures=[picture for hole in drawn for picture in _pictures(plan, hole)],
+            rows=[table_row(plan, hole, n) for n, hole in enumerate(plan.in_order, 1)],
+            weighed=any(hole.lost_motion is not None for hole in plan.holes),
+            notes=hole_notes(plan),
+            moves=[move_row(move) for move in plan.transitions],
+            sequence=sequence_line(plan.transitions, plan.cycle_time) if plan.transitions else "",
+        )
     )
 
 
