@@ -20,6 +20,9 @@ from urllib.parse import urlsplit
 import pytest
 
 from zerorev.cli.common import INTERRUPTED
+from zerorev.model.job import Job
+from zerorev.planning.job import plan_job
+from zerorev.web.state import opened_plan
 
 PATIENCE = 60.0  # [s] for a server to start or end; a machine may be busy
 OWN = ("data:", "blob:", "about:")  # addresses that never leave the browser
@@ -181,3 +184,21 @@ def say(request):
 def demo_page(open_page, demo):
     """The page of the demo."""
     return open_page(demo)
+
+
+@pytest.fixture(scope="module")
+def job(robot, tool, positions):
+    """The three published positions."""
+    return Job(robot, tool, tuple(each.hole for each in positions))
+
+
+@pytest.fixture(scope="module")
+def planned(job):
+    """Their plan."""
+    return plan_job(job)
+
+
+@pytest.fixture
+def state(planned):
+    """A page that shows it."""
+    return opened_plan(planned)

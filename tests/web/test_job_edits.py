@@ -7,30 +7,11 @@ from dataclasses import replace
 import pytest
 
 from zerorev.errors import InputError
-from zerorev.model.job import Job, Settings
+from zerorev.model.job import Settings
 from zerorev.planning.hole import plan, plan_deepest
-from zerorev.planning.job import plan_job
 from zerorev.web.job_edits import answered, with_hole, with_holes, with_settings, without_hole
 from zerorev.web.session import undone
 from zerorev.web.state import Progress, State, Steered, opened_job, opened_plan, plan_of, selected, shown, steered
-
-
-@pytest.fixture(scope="module")
-def job(robot, tool, positions):
-    """The three published positions."""
-    return Job(robot, tool, tuple(each.hole for each in positions))
-
-
-@pytest.fixture(scope="module")
-def planned(job):
-    """Their plan."""
-    return plan_job(job)
-
-
-@pytest.fixture
-def state(planned):
-    """A page that shows it."""
-    return opened_plan(planned)
 
 
 def test_an_answer_takes_the_place_of_the_edited_motion_of_its_hole_alone(state, planned):

@@ -9,29 +9,9 @@ import pytest
 from zerorev.errors import InputError
 from zerorev.files.io import plan_to_json
 from zerorev.model.finding import Finding
-from zerorev.model.job import Job
-from zerorev.planning.job import plan_job
 from zerorev.planning.sequence import with_moves
 from zerorev.web.job_edits import answered, with_hole
 from zerorev.web.state import Progress, Steered, opened_job, opened_plan, plan_of, selected, shown, steered
-
-
-@pytest.fixture(scope="module")
-def job(robot, tool, positions):
-    """The three published positions."""
-    return Job(robot, tool, tuple(each.hole for each in positions))
-
-
-@pytest.fixture(scope="module")
-def planned(job):
-    """Their plan."""
-    return plan_job(job)
-
-
-@pytest.fixture
-def state(planned):
-    """A page that shows it."""
-    return opened_plan(planned)
 
 
 def test_a_plan_opened_is_the_plan_taken_away(state, planned):
