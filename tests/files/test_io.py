@@ -122,11 +122,11 @@ def test_a_job_in_si_and_in_the_base_frame(tmp_path: Path) -> None:
     assert (first.depth, first.profile, first.branch, second.branch) == (0.05, None, None, 2)
     np.testing.assert_array_equal(second.profile.standoff, [0.05, 0, 0.05])
     np.testing.assert_array_equal(second.profile.psi, np.deg2rad([10, 20, 30]))
-    assert job.settings == Settings(blend=2e-3, feed_plunge=4e-3, feed_retract=30e-3)
+    assert job.settings == Settings(controller="krl", blend=2e-3, feed_plunge=4e-3, feed_retract=30e-3)
 
 
 def test_the_defaults_of_the_file_are_those_of_the_settings(tmp_path: Path) -> None:
-    assert job_of(tmp_path, CSV_JOB, holes=CSV).settings == Settings()
+    assert job_of(tmp_path, CSV_JOB, holes=CSV).settings == Settings(controller="krl")
 
 
 def test_every_setting_arrives(tmp_path: Path) -> None:
@@ -145,7 +145,7 @@ def test_every_setting_arrives(tmp_path: Path) -> None:
         min_rate=0.0, min_rate_rule="mean", psi_bound=np.pi, legs="free", max_twist=np.deg2rad(12e3),
         objective="margin", reversal_weights=(1, 2, 3, 4, 5, 6),
         near_joints=tuple(np.deg2rad([0, -90, 90, 0, 0, 180])), blend=1e-3, blend_shortfall=4e-4, deepen_corner=True,
-        lead_in=0.0, spindle_rpm=3000,
+        lead_in=0.0, spindle_rpm=3000, controller="krl",
     )  # fmt: skip
     np.testing.assert_array_equal(job.tool.T_flange_tcp[:3, 3], [0, 0, 0.1])
     np.testing.assert_array_equal(job.holes[0].psi_zero, [0, 0, 1])

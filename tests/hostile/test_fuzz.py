@@ -362,7 +362,7 @@ def check_part(data: bytes, _: Path) -> None:
 def check_program(data: bytes, _: Path) -> None:
     program = read_krl(text_of(data), "fuzz.src")
     assert program.name.isidentifier()
-    moves = [move.point_mm_deg for hole in program.holes for move in hole.moves]
+    moves = [(*move.end.xyz_mm, *move.end.turn) for hole in program.holes for move in hole.moves]
     lines = re.findall(r"(?m)^[ \t]*LIN[ \t]*\{(.*?)\}", text_of(data))
     assert [tuple(map(Decimal, re.findall(r"[-+]?\d*\.?\d+", line))) for line in lines] == moves
 

@@ -64,7 +64,7 @@ def test_a_statement_is_of_the_type_of_its_attribute(noun):
 def test_at_another_size_lengths_grow_and_rates_per_length_shrink():
     small = Settings(blend_shortfall=0.2e-3, psi_bound=1.0, joint_stiffness=(1e4,) * 6, spindle_rpm=6e3)
     large = scaled(small, 4.0)
-    grown = {"blend", "blend_shortfall", "lead_in", "feed_plunge", "feed_retract"}
+    grown = {"blend", "blend_shortfall", "corner_tolerance", "lead_in", "feed_plunge", "feed_retract"}
     for name in vars(small):
         before, after = getattr(small, name), getattr(large, name)
         factor = 4.0 if name in grown else 0.25 if name in ("min_rate", "max_twist") else None
@@ -79,7 +79,7 @@ def test_at_another_size_lengths_grow_and_rates_per_length_shrink():
         ({"min_rate": np.nan}, "0 or more"),
         ({"max_twist": 0.0}, "above 0"),
         ({"psi_bound": 0.0}, "above 0, or none: the spin is periodic"),
-        ({"blend_shortfall": 1.1e-3}, "0 to blend, or none: half of blend_mm"),
+        ({"blend_shortfall": 1.1e-3}, "0 to blend, or none: half of the blend"),
         ({"reversal_weights": (1.0,) * 5}, "six numbers above 0"),
         ({"joint_stiffness": (1.0,) * 5 + (np.inf,)}, "six numbers above 0"),
         ({"near_joints": (0.0,) * 5}, "six numbers"),
@@ -94,5 +94,5 @@ def test_what_is_out_of_range_is_refused_with_what_is_accepted(change, accepted)
 
 
 def test_at_the_ends_of_a_range():
-    assert replace(Settings(), min_rate=0.0, blend_shortfall=1e-3, proof_boxes=0).shortfall == 1e-3
-    assert Settings(blend_shortfall=0.0).shortfall == 0.0
+    assert replace(Settings(), min_rate=0.0, blend_shortfall=1e-3, proof_boxes=0).turning.shortfall == 1e-3
+    assert Settings(blend_shortfall=0.0).turning.shortfall == 0.0

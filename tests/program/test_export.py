@@ -117,9 +117,10 @@ def test_unknown_controller(published, plan_of):
 def test_krl_for_another_makers_robot(name, published, plan_of, spoil):
     robot = read_robot(name)
     with pytest.raises(NotExportableError, match=f"{name} is by {robot.manufacturer}.*KUKA"):
-        export(plan_of(published(1), robot=robot))
+        export(plan_of(published(1), robot=robot), "krl")
+    program = build_program(plan_of(published(1)))
     with pytest.raises(NotExportableError, match="KUKA"):
-        to_krl(spoil(build_program(plan_of(published(1))), manufacturer=""))
+        to_krl(spoil(program, robot=spoil(program.robot, manufacturer="")))
 
 
 def test_the_same_plan_gives_the_same_text(published, plan_of):
@@ -384,10 +385,10 @@ def test_a_program_of_several_files(published, plan_of, monkeypatch, tmp_path):
     def write(program, name, findings, version):
         return ProgramFile(f"{name}.main", "begin\n"), ProgramFile(f"{name}.data", "points\n")
 
-    monkeypatch.setitem(DIALECTS, "two", replace(DIALECTS["krl"], name="two", suffix=".main", write=write))
+    monkeypatch.setitem(DIALECTS, "krl", replace(DIALECTS["krl"], suffix=".main", write=write))
     plan = tmp_path / "plan.json"
     write_plan(plan_of(published(1)), plan)
-    assert main(["export", str(plan), "--controller", "two", "-o", str(tmp_path / "out.main")]) == 0
+    assert main(["export", str(plan), "-o", str(tmp_path / "out.main")]) == 0
     written = {path.name: path.read_text() for path in tmp_path.iterdir() if path != plan}
     assert written == {"out.main": "begin\n", "out.data": "points\n"}
 

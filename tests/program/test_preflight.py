@@ -152,7 +152,7 @@ def test_a_move_of_too_great_a_turn_is_an_error(published, plan_of, spoil):
     plan = plan_of(published(1))
     program = build_program(plan)
     (hole,) = program.holes
-    far = spoil(hole.moves[1], psi=hole.moves[1].psi - np.deg2rad(170))
+    far = spoil(hole.moves[1], end=spoil(hole.moves[1].end, psi=hole.moves[1].psi - np.deg2rad(170)))
     broken = spoil(program, holes=(spoil(hole, moves=(hole.moves[0], far, hole.moves[2])),))
     messages = [f.message for f in preflight(broken, plan) if f.kind == "move_turn"]
     assert len(messages) == 2

@@ -256,7 +256,7 @@ class TestPlan:
 
     def test_of_a_corner_placed_deeper_they_are_those_at_the_corner(self, robot, tool):
         settings = Settings(min_rate=0.0, blend=0.01, deepen_corner=True)
-        deeper = Profile.straight(0.05, 0.25, -0.1, -0.55, corner=settings.corner)
+        deeper = Profile.straight(0.05, 0.25, -0.1, -0.55, corner=settings.corner_standoff)
         answer = plan(robot, tool, replace(POSITION_1, profile=deeper, branch=4), settings)
         corner = replace(POSITION_1, target=POSITION_1.target + 0.005 * X)
         np.testing.assert_allclose(answer.critical_rates, critical(Drilling(robot, tool, corner), 4, -0.1).kappa)

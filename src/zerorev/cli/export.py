@@ -25,7 +25,7 @@ def export(
     plan: Path,
     /,
     *,
-    controller: str = "krl",
+    controller: str | None = None,
     output: Output = None,
     skip_failed: bool = False,
     holes_per_program: Whole | None = None,
@@ -39,7 +39,7 @@ def export(
 
     Args:
         plan: The plan file (JSON).
-        controller: The robot's controller: krl (KUKA).
+        controller: The robot's controller: krl (KUKA); by default the one that the plan was made for.
         output: The program's file, which is replaced if it is there; by default beside the plan, called as the plan is,
             and only a program of this very plan is replaced.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.
@@ -65,7 +65,7 @@ def export(
 
         answer = known_as_checked(answer)
 
-    from zerorev.program.dialects import program_file
+    from zerorev.program.dialects import dialect_for, program_file
     from zerorev.program.export import export as to_program
     from zerorev.program.export import retract_name, retract_program
     from zerorev.program.plan_mark import check_replaceable, plan_mark
@@ -74,7 +74,7 @@ def export(
     ids = _ids(answer, only)
     called = selection(answer, start, ids).name if retract is None else retract_name(answer, retract)
     if output is None:
-        file, mark = program_file(called, controller), plan_mark(answer.name, plan.name)
+        file, mark = program_file(called, dialect_for(answer, controller).name), plan_mark(answer.name, plan.name)
         check_replaceable(plan.parent, [file], mark, INSTEAD)
     name = output.stem if output else None
     if retract is not None:

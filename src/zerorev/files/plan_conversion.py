@@ -18,7 +18,16 @@ from zerorev.files.conversion import (
     tool_from,
 )
 from zerorev.files.plan_data import MOTION, SCORE, answer_data, twist_spread
-from zerorev.files.plan_schema import DepthFile, DepthHole, GivenForm, JointsDegForm, LostMotionForm, PlanFile, PlanHole
+from zerorev.files.plan_schema import (
+    CornerForm,
+    DepthFile,
+    DepthHole,
+    GivenForm,
+    JointsDegForm,
+    LostMotionForm,
+    PlanFile,
+    PlanHole,
+)
 from zerorev.files.stated_forms import Form, agree, noun_from
 from zerorev.files.text import Document
 from zerorev.files.units import deg, m, mm, plain, rad, rad_per_m
@@ -30,6 +39,7 @@ from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
+    Corner,
     Event,
     HolePlan,
     LostMotion,
@@ -183,6 +193,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             measures=_noun_from(Measures, form.criteria),
             optimality=_noun_from(Optimality, form.optimality),
             lost_motion=_lost_motion_from(form.lost_motion),
+            corner=_corner_from(form.corner),
             critical_rates=_critical_from(form),
         )
 
@@ -210,6 +221,13 @@ def _score_from(form: PlanHole) -> Score | None:
 
 def _lost_motion_from(form: LostMotionForm | None) -> LostMotion | None:
     return None if form is None else noun_from(LostMotion, form, events=_nouns_from(LostMotionEvent, form.events))
+
+
+def _corner_from(form: CornerForm | None) -> Corner | None:
+    if form is None:
+        return None
+    least, most = m(form.interval_mm)
+    return noun_from(Corner, form, interval=(float(least), float(most)))
 
 
 def _critical_from(form: PlanHole) -> Array | None:

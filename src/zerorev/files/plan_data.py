@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
 from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
-from zerorev.model.plan import HolePlan, LostMotion, Motion, Plan, Score, Strokes
+from zerorev.model.plan import Corner, HolePlan, LostMotion, Motion, Plan, Score, Strokes
 from zerorev.model.stated import stated
 
 __all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "sequence_data",
@@ -95,6 +97,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "certified_within": _data(answer.certified_within),
         "criteria": _data(answer.measures),
         "lost_motion": _lost_motion_data(answer.lost_motion),
+        "corner": _corner_data(answer.corner),
         "findings": [data_of(finding) for finding in answer.findings],
     }
 
@@ -105,6 +108,10 @@ def _data(noun: object) -> dict[str, Any] | None:
 
 def _lost_motion_data(lost: LostMotion | None) -> dict[str, Any] | None:
     return None if lost is None else data_of(lost) | {"events": [data_of(event) for event in lost.events]}
+
+
+def _corner_data(corner: Corner | None) -> dict[str, Any] | None:
+    return None if corner is None else data_of(corner) | {"interval_mm": mm(np.array(corner.interval))}
 
 
 def _critical_data(kappa: Array | None) -> dict[str, Any]:

@@ -143,6 +143,14 @@ HOLE_FIELDS: dict[str, Field] = {
     "lost_motion.events.leg": _EXACT,
     "lost_motion.events.standoff_mm": Field("figure", DIGITS, 1e-7),
     "lost_motion.events.friction": _EXACT,
+    "corner": Field("figure", optional=True),
+    "corner.kind": _EXACT,
+    "corner.shortfall_mm": Field("figure", DIGITS, 1e-9),
+    "corner.interval_mm": Field("figure", DIGITS, 1e-9),
+    "corner.law": _EXACT,
+    "corner.reach_mm": Field("figure", DIGITS, 1e-6),  # it is cut where a tolerance is met
+    "corner.off_axis_mm": Field("figure", 1e-4, 1e-8),
+    "corner.tilt_deg": Field("figure", 1e-4, 1e-8),
     "cycle_time_s": Field("figure", DIGITS, 1e-6, optional=True),
     "findings": Field("finding"),
 }

@@ -26,6 +26,7 @@ from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
+    Corner,
     Event,
     HolePlan,
     LostMotion,
@@ -124,6 +125,15 @@ class LostMotionForm(Form):
     )
 
 
+@keys_of(Corner, needed=True)
+class CornerForm(Form):
+    """How the motion turns round at the corner, and what that costs."""
+
+    interval_mm: Annotated[list[NotNegative], Field(min_length=2, max_length=2)] = Field(
+        description="two numbers [mm]: least and greatest shortfall"
+    )
+
+
 @keys_of(Baseline, needed=True)
 class BaselineForm(Form):
     """The same hole drilled with constant spin, psi = psi_start, on the plan's branch."""
@@ -217,6 +227,10 @@ class PlanHole(Form):
         default=None,
         description="a mapping of what the gears are predicted to add at the tip, and where loads change their sign; "
         "or null: the robot's masses are not known",
+    )
+    corner: CornerForm | None = Field(
+        default=None,
+        description="a mapping of how the motion turns round at the corner, and what that costs; or null: not said",
     )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 

@@ -21,6 +21,7 @@ FindingKind = Literal[
     "certificate",
     "channels",
     "clearance",
+    "corner",
     "corner_not_deepened",
     "deepest",
     "depth",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
+from zerorev.model.corner import controller_of
 from zerorev.model.hole import Hole
 from zerorev.model.measures import CRITERIA
 from zerorev.model.robot import Robot
@@ -41,7 +42,7 @@ class Job:
         robot: the arm.
         tool: the drill on its flange.
         holes: what to drill, base frame.
-        settings: how.
+        settings: how; where no controller is named, it becomes that of the robot's maker, if that is known.
         T_base_part: part frame, shape (4, 4), translation [m].
         name: of the job; names the program.
         psi_reference: what the spins of all holes are counted from where the part is moved: one of
@@ -59,7 +60,10 @@ class Job:
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        """Check that there are holes and that their ids differ."""
+        """Check that there are holes and that their ids differ, and name the controller."""
+        known = controller_of(self.robot.manufacturer)
+        if self.settings.controller is None and known is not None:
+            object.__setattr__(self, "settings", replace(self.settings, controller=known.name))
         T = finite(self.T_base_part, (4, 4), "part_frame")
         if not is_rigid(T):
             raise InputError("not a rotation and a translation", where="part_frame")

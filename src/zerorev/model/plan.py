@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.corner import CornerKind
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
@@ -18,13 +19,14 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.shown import Shown
 from zerorev.model.stated import Choice, Switch, Whole, with_attributes
-from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Texts
+from zerorev.model.stated_figures import Count, Figure, SixCounts, SixFigures, Text, Texts
 from zerorev.model.tool import Tool
 from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT, S
 
 __all__ = [
     "Baseline",
     "Certificate",
+    "Corner",
     "Event",
     "HolePlan",
     "LostMotion",
@@ -131,6 +133,26 @@ class Motion:
     profile: Profile
     branch: int
     joints: Array
+
+
+@dataclass(frozen=True)
+class Corner:
+    """How a motion turns round at its deepest point, and what that costs.
+
+    Attributes:
+        interval: least and greatest shortfall [m].
+    """
+
+    kind: Annotated[
+        CornerKind,
+        Choice(words={"blend": "of straight moves", "joint": "of joint moves", "stop": "all joints rest"}),
+    ]
+    shortfall: Annotated[float, Figure("how far short of the programmed corner the tip turns back", MM, least=0)]
+    interval: tuple[float, float]
+    law: Annotated[str, Text("by what that is expected")]
+    reach: Annotated[float, Figure("how far from the corner joint moves begin and end; 0: there are none", MM, least=0)]
+    off_axis: Annotated[float, Figure("the tip off the drill axis on the joint moves, at most", MM, least=0)]
+    tilt: Annotated[float, Figure("the tool tilted against it there, at most", DEG, least=0)]
 
 
 @dataclass(frozen=True)
@@ -259,6 +281,7 @@ class HolePlan(Shown):
             finite where a joint has none; None without a motion.
         certified_within: every placement error of the part within these bounds is certified, too; None until proven.
         lost_motion: what the gears are predicted to add at the tip; None where the robot's masses are not known.
+        corner: how the motion turns round; None without one, and in files of before it was said.
     """
 
     hole: Hole
@@ -292,6 +315,7 @@ class HolePlan(Shown):
     critical_rates: Array | None = None
     certified_within: Within | None = None
     lost_motion: LostMotion | None = None
+    corner: Corner | None = None
     cycle_time: Annotated[
         float | None,
         Figure("time of the hole's own moves at their feeds", S, least=0, null=None, none="no motion", added=True),
@@ -376,6 +400,7 @@ class Plan(Shown):
 
 for _noun in (
     Finding,
+    Corner,
     Event,
     LostMotionEvent,
     LostMotion,

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 
 from zerorev.errors import InputError
 from zerorev.model.controller import Calls, ExternalAxis, check_controller
+from zerorev.model.corner import CONTROLLERS, ControllerName, CornerKind, Turning, known_controller, turning_of
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
@@ -124,23 +125,57 @@ class Settings:
             label="room at the joint limits",
         ),
     ] = 0.0
+    controller: Annotated[
+        ControllerName | None,
+        Choice(
+            "which controller runs the program",
+            words={name: each.maker for name, each in CONTROLLERS.items()},
+            none="that of the robot's maker",
+            note="The depth lost at the corner depends on it",
+            group=RUN,
+            label="controller",
+        ),
+    ] = None
+    corner: Annotated[
+        CornerKind | None,
+        Choice(
+            "how the motion turns round at the target",
+            words={
+                "blend": "straight moves of the tip that are blended",
+                "joint": "the last of the plunge and the first of the retract as joint moves that are blended",
+                "stop": "an exact stop, with all joints at rest",
+            },
+            none="as usual for the controller: blend for krl, joint for the others, stop where blend_mm is 0",
+            note="In the space of the joints the corner of a motion without reversals is less than a right angle",
+            label="corner",
+        ),
+    ] = None
+    corner_tolerance: Annotated[
+        float,
+        Number(
+            "how far the tip may leave the drill axis at a corner of joint moves, which are made shorter for it",
+            MM,
+            above=0,
+            note="The axis may tilt by 0.01 deg",
+            label="tip off the axis there",
+        ),
+    ] = 20e-6
     blend: Annotated[
         float,
         Number(
-            "radius of the blend at the corner",
+            "radius of the blend at the corner, or how far from it joint moves begin, at most",
             MM,
             least=0,
             note="`$APO.CDIS`; 0 stops there exactly, with all joints at rest",
-            group=RUN,
             label="blend at the corner",
         ),
     ] = 1e-3
     blend_shortfall: Annotated[
         float | None,
         Number(
-            "depth lost to the blend as measured",
+            "depth lost at the corner as measured",
             MM,
-            none="half of blend_mm",
+            none="half of the blend",
             least=0,
             up_to="blend",
             label="depth lost to it",
@@ -332,6 +367,7 @@ class Settings:
         check(self)
         check_controller(self.robroot, self.external_axes, self.header)
         self._check_weights()
+        turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
 
     def _check_weights(self) -> None:
         weights = dict(self.weights)
@@ -363,14 +399,24 @@ class Settings:
         return self.blend or 1e-3
 
     @property
-    def shortfall(self) -> float:
-        """Depth lost to the blend [m]: as measured, or half the radius of a parabolic blend (theory §5)."""
-        return self.blend / 2 if self.blend_shortfall is None else self.blend_shortfall
+    def turning(self) -> Turning:
+        """How the motion turns round at the corner, and how much of the depth is lost to it."""
+        return turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
 
     @property
-    def corner(self) -> float:
+    def blend_share(self) -> float:
+        """Share of the shorter move that a blend may take, at most."""
+        return known_controller(self.controller).share
+
+    @property
+    def corner_blend(self) -> float:
+        """Radius of the blend of straight moves at the corner [m]; 0 where they are not blended there."""
+        return self.blend if self.turning.kind == "blend" else 0.0
+
+    @property
+    def corner_standoff(self) -> float:
         """Stand-off of the programmed corner [m]: 0, or below 0 where it is placed deeper."""
-        return -self.shortfall if self.deepen_corner else 0.0
+        return -self.turning.shortfall if self.deepen_corner else 0.0
 
 
 Settings.__doc__ = with_attributes(Settings)

@@ -4,12 +4,56 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
-__all__ = ["Drilled", "Six", "Statement", "Word", "WrittenHole", "WrittenMove", "WrittenProgram"]
+__all__ = [
+    "Drilled", "Pace", "Statement", "Word", "WrittenFrame", "WrittenHole", "WrittenJoints", "WrittenMove",
+    "WrittenProgram",
+]  # fmt: skip
 
-Six = tuple[Decimal, Decimal, Decimal, Decimal, Decimal, Decimal]
+Numbers = tuple[Decimal, ...]
 Word = str | Decimal
+
+
+@dataclass(frozen=True)
+class WrittenFrame:
+    """A pose as it is printed.
+
+    Attributes:
+        xyz_mm: origin [mm], three numbers.
+        turn: its rotation R.
+        form: what `turn` has: `zyx_deg`, three angles [deg], R = Rz(t0) Ry(t1) Rx(t2); `quaternion`, w, x, y, z of any
+            length; `vector_rad`, the rotation vector [rad].
+    """
+
+    xyz_mm: Numbers
+    turn: Numbers
+    form: Literal["zyx_deg", "quaternion", "vector_rad"] = "zyx_deg"
+
+
+@dataclass(frozen=True)
+class WrittenJoints:
+    """Six joint values as they are printed, turns included.
+
+    Attributes:
+        values: as the controller shows them (`Robot.display`), or counts.
+        unit: of all six; pulses are what `Robot.pulses_per_deg` says.
+    """
+
+    values: Numbers
+    unit: Literal["deg", "rad", "pulses"] = "deg"
+
+
+class Pace(NamedTuple):
+    """How fast a move is.
+
+    Attributes:
+        value: as printed.
+        unit: of the tip [m/s], or the time of the whole move [s], or a share of what the joints can [%].
+    """
+
+    value: Decimal
+    unit: Literal["m/s", "s", "%"] = "m/s"
 
 
 @dataclass(frozen=True)
@@ -36,19 +80,26 @@ class Statement:
 
 @dataclass(frozen=True)
 class WrittenMove:
-    """A straight move of the tool.
+    """A move of the tool.
 
     Attributes:
         line: of the file, from 1.
-        point_mm_deg: X, Y, Z [mm] and A, B, C [deg] of its end in the part frame; R = Rz(A) Ry(B) Rx(C).
-        blend_mm: radius at its end [mm]; 0 is an exact stop.
-        feed_m_s: of the tip [m/s].
+        end: where it ends: a pose in the part frame, or joints.
+        pace: how fast it is.
+        blend_mm: radius at its end [mm]; 0 is an exact stop, None a blend whose size the program does not have.
+        linear: whether the tip goes straight, the tool turning evenly about one axis; else all joints move evenly.
     """
 
     line: int = field(compare=False)
-    point_mm_deg: Six
-    blend_mm: Decimal
-    feed_m_s: Decimal
+    end: WrittenFrame | WrittenJoints
+    pace: Pace
+    blend_mm: Decimal | None
+    linear: bool = True
+
+    @property
+    def stops(self) -> bool:
+        """Whether the robot stands at its end."""
+        return self.blend_mm == 0
 
 
 @dataclass(frozen=True)
@@ -57,15 +108,15 @@ class WrittenHole:
 
     Attributes:
         line: of the file at which the robot moves to the first point, from 1.
-        axes_deg: the six axis values there [deg], turns included.
-        moves: the straight moves from there on; the last one ends in an exact stop.
+        start: the joints there.
+        moves: those from there on; the last one ends in an exact stop.
         statements: all of them, from the move to the first point on.
         way: those before it, which lead there from the hole before.
         file: name of the file; empty where the program is one file.
     """
 
     line: int = field(compare=False)
-    axes_deg: Six
+    start: WrittenJoints
     moves: tuple[WrittenMove, ...]
     statements: tuple[Statement, ...]
     way: tuple[Statement, ...] = ()
@@ -74,12 +125,12 @@ class WrittenHole:
 
 @dataclass(frozen=True)
 class WrittenProgram:
-    """A program: the tool goes straight from point to point and turns evenly about one axis on each move.
+    """A program.
 
     Attributes:
         name: in the program.
-        tool_mm_deg: the tool frame in the flange frame, as a point.
-        base_mm_deg: the part frame in the robot's base frame, as a point.
+        tool: the tool frame in the flange frame; None: the program has only its number.
+        base: the part frame in the controller's base frame; None: the program has only its number.
         holes: in order.
         head: all statements before the first hole; of a program of several files, all outside of holes but for the
             end of the last file.
@@ -88,8 +139,8 @@ class WrittenProgram:
     """
 
     name: str = field(compare=False)  # in capitals it is in the head
-    tool_mm_deg: Six
-    base_mm_deg: Six
+    tool: WrittenFrame | None
+    base: WrittenFrame | None
     holes: tuple[WrittenHole, ...]
     head: tuple[Statement, ...]
     tail: tuple[Statement, ...] = ()

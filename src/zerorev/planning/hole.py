@@ -23,6 +23,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
+from zerorev.planning.corner import corner_findings, corner_of
 from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
@@ -180,8 +181,12 @@ def _answered(
         lost_motion=lost_motion_of(drilling, best.profile, best.branch, settings.thrust),
     )
     assert answer.motion is not None
-    verified = verify_hole(robot, tool, settings, answer)
-    answer = replace(answer, verified=verified, cycle_time=cycle_time(drilling, settings, answer.motion))
+    answer = replace(
+        answer,
+        corner=corner_of(drilling, settings, answer.motion),
+        cycle_time=cycle_time(drilling, settings, answer.motion),
+    )
+    answer = replace(answer, verified=verify_hole(robot, tool, settings, answer))
     return replace(answer, findings=motion_findings(drilling, settings, answer))
 
 
@@ -278,6 +283,7 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     found += limit_findings(drilling, answer, way)
     found += hole_turn(answer, way.lead_in)
     found += load_findings(drilling, settings, answer)
+    found += corner_findings(settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
 

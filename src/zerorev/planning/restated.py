@@ -28,6 +28,7 @@ from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
+from zerorev.planning.corner import corner_of
 from zerorev.planning.hole import cycle_time, lever_findings, motion_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
 from zerorev.planning.sequence import moves_of, time_of
@@ -201,6 +202,7 @@ def check_hole(
         critical_rates=answer.critical_rates,
         measures=answer.measures,
         lost_motion=answer.lost_motion,
+        corner=corner_of(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated.motion),
         verified=stated.verified,
         cycle_time=cycle_time(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated.motion),
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
@@ -307,8 +309,10 @@ def _asked_differs(robot: Robot, settings: Settings, stated: HolePlan, deepest: 
     if stated.status != "planned":
         return
     profile = motion.profile
-    if abs(profile.standoff.min() - settings.corner) > 1e-9 * robot.size:
-        yield differ(f"standoff_mm[{profile.corner}]", float(mm(profile.standoff.min())), float(mm(settings.corner)))
+    if abs(profile.standoff.min() - settings.corner_standoff) > 1e-9 * robot.size:
+        yield differ(
+            f"standoff_mm[{profile.corner}]", float(mm(profile.standoff.min())), float(mm(settings.corner_standoff))
+        )
     twist = float(np.abs(profile.twist_rate).max())
     if profile.psi.size > 3 and twist > settings.max_twist * (1 + 1e-6):
         yield differ("settings.max_twist_deg_per_mm", float(deg_per_mm(settings.max_twist)), float(deg_per_mm(twist)))

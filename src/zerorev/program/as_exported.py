@@ -19,7 +19,7 @@ from zerorev.model.plan import Plan
 from zerorev.model.written import Drilled, Statement, WrittenHole, WrittenProgram
 from zerorev.program.dialect import Dialect
 from zerorev.program.neutral import Program, build_program
-from zerorev.program.refusals import refusals
+from zerorev.program.refusals import refusals, refuse_other_makers
 
 __all__ = ["Expected", "as_exported", "expected"]
 
@@ -52,7 +52,7 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
     Raises:
         NotExportableError: the robot is not one for the program's language.
     """
-    dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
+    refuse_other_makers(dialect.name, plan.robot)
     refused = refusals(plan)
     moving = tuple(hole.hole.id for hole in plan.in_order if hole.motion is not None)
     if None in refused or all(hole_id in refused for hole_id in moving):

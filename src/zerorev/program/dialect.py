@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from zerorev.model.corner import Controller
 from zerorev.model.finding import Finding
 from zerorev.model.written import Word, WrittenProgram
 from zerorev.program.neutral import Program
@@ -31,26 +32,29 @@ class Dialect:
     """The language of one maker's controllers.
 
     Attributes:
-        name: of its folder, and what `--controller` takes.
-        controllers: whose they are, for people.
+        controller: what is known of these; its name is that of the folder, and what `--controller` takes.
         suffix: of the file that is given to the reader, with its dot.
         alike: (words found, words expected) -> whether two statements are the same but for the last printed digits.
         program_name: makes a name that the controller accepts of any text.
-        check_robot: (manufacturer, robot) -> raises `NotExportableError` where the controller cannot drive it.
         write: (program, name, findings, version of zerorev) -> its files, the one that is started first.
         read: what `write` has written, the file that is started first; raises `InputError` at a statement of another
             form than `write` writes, for it might move the robot in a way that nobody has examined.
         parts: of the file that is started -> the names of the others, in order.
-        retract: (way out of a hole, name, version of zerorev) -> the file of a program.
+        retract: (way out of a hole, name, version of zerorev) -> the file of a program; None: not offered.
+        examine: what the language asks of a program beyond what all do; an error among the findings stops the export.
     """
 
-    name: str
-    controllers: str
+    controller: Controller
     suffix: str
     alike: Callable[[Sequence[Word], Sequence[Word]], bool]
     program_name: Callable[[str], str]
-    check_robot: Callable[[str, str], None]
     write: Callable[[Program, str, tuple[Finding, ...], str | None], tuple[ProgramFile, ...]]
     read: Callable[[Sequence[ProgramFile]], WrittenProgram]
     parts: Callable[[ProgramFile], tuple[str, ...]]
-    retract: Callable[[Retract, str, str], ProgramFile]
+    retract: Callable[[Retract, str, str], ProgramFile] | None = None
+    examine: Callable[[Program], tuple[Finding, ...]] = lambda program: ()
+
+    @property
+    def name(self) -> str:
+        """Of its folder."""
+        return self.controller.name

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from zerorev.errors import InputError
+from zerorev.errors import InputError, NotExportableError
 from zerorev.files.text import read_bytes
+from zerorev.model.corner import controller_of
+from zerorev.model.plan import Plan
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.dialect import KRL
+from zerorev.program.refusals import refuse_other_makers
 
 __all__ = ["DIALECTS", "dialect_called", "dialect_of", "program_file", "read_program"]
 
@@ -38,10 +41,37 @@ def dialect_of(path: Path) -> Dialect:
     for dialect in DIALECTS.values():
         if path.suffix.lower() == dialect.suffix:
             return dialect
-    known = " or ".join(f"{each.suffix} ({each.name}, {each.controllers})" for each in DIALECTS.values())
+    known = " or ".join(f"{each.suffix} ({each.name}, {each.controller.maker})" for each in DIALECTS.values())
     raise InputError(
         f"'{path.suffix}' is the ending of no program", where=str(path), accepted=f"a program that ends in {known}"
     )
+
+
+def dialect_for(plan: Plan, controller: str | None = None) -> Dialect:
+    """The dialect in which a plan is written: the one asked for, the one it was planned for, or that of the maker.
+
+    Args:
+        plan: whose robot it is.
+        controller: one of `DIALECTS`; None: not asked for.
+
+    Raises:
+        InputError: there is none of that name.
+        NotExportableError: the robot is another maker's, or of one whose controller is not known; the plan was made for
+            another controller.
+    """
+    planned, own = plan.settings.controller, controller_of(plan.robot.manufacturer)
+    name = controller or planned or (None if own is None else own.name)
+    if name is None:
+        made = plan.robot.manufacturer.strip() or "a maker that its file does not name"
+        raise NotExportableError((f"the robot {plan.robot.name} is of {made}, for which no program can be written",))
+    dialect = dialect_called(name)
+    refuse_other_makers(name, plan.robot)
+    if planned is not None and planned != name:
+        why = (
+            f"the plan was made for the controller {planned}: plan again with controller: {name}, whose corner differs"
+        )
+        raise NotExportableError((why,))
+    return dialect
 
 
 def program_file(name: str, controller: str) -> str:

@@ -12,7 +12,7 @@ from zerorev.errors import NotExportableError
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.program.dialect import ProgramFile
-from zerorev.program.dialects import dialect_called
+from zerorev.program.dialects import dialect_for
 from zerorev.program.neutral import build_program
 from zerorev.program.preflight import preflight
 from zerorev.program.retract import retract_of
@@ -51,7 +51,7 @@ class Exported:
 
 def export(
     plan: Plan,
-    controller: str = "krl",
+    controller: str | None = None,
     *,
     skip_failed: bool = False,
     name: str | None = None,
@@ -70,7 +70,7 @@ def export(
 
     Args:
         plan: what to run.
-        controller: one of `DIALECTS`.
+        controller: one of `DIALECTS`; None: the one that the plan was made for, or that of the robot's maker.
         skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
         name: of the program; by default the plan's.
         plan_file: name of the file that the plan is in; it stands in the program, so that the next export of the plan
@@ -117,7 +117,7 @@ def _finished(steps: Generator[None, None, T], reached: Callable[[int], object] 
 
 def exporting(
     plan: Plan,
-    controller: str = "krl",
+    controller: str | None = None,
     *,
     skip_failed: bool = False,
     name: str | None = None,
@@ -129,8 +129,7 @@ def exporting(
     workers: int | None = 1,
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
-    dialect = dialect_called(controller)
-    dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
+    dialect = dialect_for(plan, controller)
     wanted = selection(plan, start, only)
     verified = yield from _verified(plan, workers, wanted.ids)
     program = build_program(verified, skip_failed=skip_failed, only=wanted.ids, plan_file=plan_file)
@@ -139,7 +138,7 @@ def exporting(
         findings=(*wanted.findings, *program.findings),
         parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program),
     )
-    findings = preflight(program, plan)
+    findings = (*preflight(program, plan), *dialect.examine(program))
     _refuse_errors(findings)
     called = dialect.program_name(name or wanted.name)
     files = dialect.write(program, called, findings, version)
@@ -170,7 +169,7 @@ def _sizes(files: tuple[ProgramFile, ...]) -> tuple[Finding, ...]:
 def retract_program(
     plan: Plan,
     hole_id: str,
-    controller: str = "krl",
+    controller: str | None = None,
     *,
     name: str | None = None,
     plan_file: str = "",
@@ -181,7 +180,7 @@ def retract_program(
     Args:
         plan: whose hole it is.
         hole_id: of the hole.
-        controller: one of `DIALECTS`.
+        controller: one of `DIALECTS`; None: the one that the plan was made for, or that of the robot's maker.
         name: of the program; by default the plan's, and which hole.
         plan_file: see `export`.
         version: of zerorev, for the comment block; by default the installed one.
@@ -191,8 +190,10 @@ def retract_program(
         NotExportableError: the robot is another maker's, the hole has no verified motion, or the drill cannot be
             brought out straight.
     """
-    dialect = dialect_called(controller)
-    dialect.check_robot(plan.robot.manufacturer, plan.robot.name)
+    dialect = dialect_for(plan, controller)
+    if dialect.retract is None:
+        why = f"a program that brings the drill out of a hole is not offered in {dialect.controller.language}"
+        raise NotExportableError((why,))
     called = dialect.program_name(name or retract_name(plan, hole_id))
     number_of(plan, hole_id, "retract")
     way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)

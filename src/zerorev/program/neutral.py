@@ -1,24 +1,26 @@
 """The controller-neutral program: what every controller's file says, before any dialect.
 
-The tool frame *as written* has X along the plunge (X = -Z_tcp), Y = Y_tcp and so Z = X_tcp. The hole's axis is then the
-X direction of every pose of a hole, and the spin is a turn about X alone: of KUKA's angles (A, B, C about Z, Y', X'')
-only C varies along a hole, for any direction of the hole. The tool as the thesis draws it does not have this, and
-passes the singularity of those angles within the range of position 1.
+Every point carries its joints with turns beside its pose, so that a dialect may write either. Poses are those of the
+tcp frame; how the axes of the tool lie that a dialect writes is its own choice.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from zerorev.errors import NotExportableError
-from zerorev.model._arrays import Array, transform
-from zerorev.model.dynamics import Load
+from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.robot import Robot
+from zerorev.model.tool import Tool
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.joint_path import FULL_TURN, joints_along
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.between import moves_between
 from zerorev.program.plan_mark import plan_mark
@@ -26,50 +28,64 @@ from zerorev.program.refusals import left_out, refusals
 from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
 from zerorev.program.ways import Stop, stop_of
 
-__all__ = ["HoleProgram", "JointMove", "LinearMove", "Program", "build_program", "split"]
+__all__ = ["HoleProgram", "Move", "Point", "Program", "build_program", "split"]
 
-T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
-"""The tool frame as written, in the tcp frame."""
+BETWEEN = 64  # samples from point to point, along which the joints are followed
 
 
 @dataclass(frozen=True)
-class JointMove:
-    """A move of all axes at once, to the point where a hole's linear moves begin; the tool stops there.
+class Point:
+    """A point of a hole's motion.
 
     Attributes:
+        T_part_tcp: pose of the tcp frame, shape (4, 4), translation [m].
         joints: controller angles with turns [rad], shape (6,).
-        T_part_tool: the pose it arrives at, shape (4, 4), translation [m].
         standoff: [m].
-        psi: spin [rad].
+        psi: spin [rad], with turns, so that the sense of a turn can be read.
     """
 
+    T_part_tcp: Array
     joints: Array
-    T_part_tool: Array
     standoff: float
     psi: float
 
 
 @dataclass(frozen=True)
-class LinearMove:
-    """A straight move of the tool tip, the tool turning evenly about the drill axis.
+class Move:
+    """A move to a point: straight, the tool turning evenly about the drill axis; or of all joints evenly.
 
     Attributes:
-        T_part_tool: where it ends, shape (4, 4), translation [m].
-        standoff: where it ends [m].
-        psi: spin where it ends [rad], with turns, so that the sense of the turn can be read.
+        end: where it ends.
+        length: along the drill axis [m].
         feed: of the tip [m/s].
         blend: radius at its end [m]; 0 is an exact stop.
         leg: which part of the motion it belongs to.
         comment: what its end is.
+        linear: whether the tip goes straight.
     """
 
-    T_part_tool: Array
-    standoff: float
-    psi: float
+    end: Point
+    length: float
     feed: float
     blend: float
     leg: Leg
     comment: str
+    linear: bool = True
+
+    @property
+    def standoff(self) -> float:
+        """Where it ends [m]."""
+        return self.end.standoff
+
+    @property
+    def psi(self) -> float:
+        """Spin where it ends [rad]."""
+        return self.end.psi
+
+    @property
+    def time(self) -> float:
+        """That it takes at its feed [s]."""
+        return self.length / self.feed
 
 
 @dataclass(frozen=True)
@@ -81,7 +97,7 @@ class HoleProgram:
         axis: unit plunge direction in the part frame, shape (3,).
         depth: stroke [m].
         way: joints through which moves of all axes lead to the start, with a stop at each [rad], shape (n, 6).
-        start: the move to where the linear moves begin.
+        start: to which all axes move, and where the tool stops before the moves of the hole begin.
         lead_in: length run along the plunge leg before the stroke begins [m].
         moves: in order.
         corner: index of the move that ends at the turning point of the motion.
@@ -93,15 +109,15 @@ class HoleProgram:
     axis: Array
     depth: float
     way: Array
-    start: JointMove
+    start: Point
     lead_in: float
-    moves: tuple[LinearMove, ...]
+    moves: tuple[Move, ...]
     corner: int
     reversals_per_joint: tuple[int, ...]
     number: int = 1
 
     @property
-    def corner_move(self) -> LinearMove:
+    def corner_move(self) -> Move:
         """The move that ends at the turning point."""
         return self.moves[self.corner]
 
@@ -112,36 +128,26 @@ class Program:
 
     Attributes:
         name: of the plan.
-        robot: name of the robot file.
-        manufacturer: of the robot.
-        model: the maker's name of the robot.
-        joint_names: as the controller shows them.
-        tool: name of the tool.
-        T_flange_tool: the tool frame as written, shape (4, 4), translation [m].
+        robot: the arm.
+        tool: the drill.
         T_base_part: the part frame, shape (4, 4), translation [m]; every pose is given in it.
         settings: how the motion is run.
         holes: as they are drilled.
         end: joints through which moves of all axes lead away from the last hole [rad], shape (n, 6).
         findings: what was shortened or left out on the way here.
-        load: what hangs on the flange; None: not known.
         listed: how many holes the plan has.
         plan_file: name of the file that the plan is in; empty: of none.
         parts: how many holes each of the files has into which it is split; empty: it is one file.
     """
 
     name: str
-    robot: str
-    manufacturer: str
-    model: str
-    joint_names: tuple[str, ...]
-    tool: str
-    T_flange_tool: Array
+    robot: Robot
+    tool: Tool
     T_base_part: Array
     settings: Settings
     holes: tuple[HoleProgram, ...]
     end: Array
     findings: tuple[Finding, ...] = ()
-    load: Load | None = None
     listed: int = 0
     plan_file: str = ""
     parts: tuple[int, ...] = ()
@@ -187,18 +193,13 @@ def build_program(
     findings += [finding for stop in stops for finding in stop.way.findings]
     return Program(
         name=plan.name,
-        robot=plan.robot.name,
-        manufacturer=plan.robot.manufacturer,
-        model=plan.robot.model,
-        joint_names=plan.robot.joint_names,
-        tool=plan.tool.name,
-        T_flange_tool=plan.tool.T_flange_tcp @ T_TCP_TOOL,
+        robot=plan.robot,
+        tool=plan.tool,
         T_base_part=plan.T_base_part,
         settings=plan.settings,
         holes=tuple(holes),
         end=end,
         findings=tuple(findings),
-        load=plan.tool.load,
         listed=len(plan.holes),
         plan_file=plan_file,
     )
@@ -245,8 +246,8 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
     motion, settings = hole.motion, plan.settings
     assert motion is not None
     lead_in, approach, retract = stop.way.lead_in, stop.way.approach, stop.way.retract
-    points, corner = waypoints(motion.profile, lead_in.length)
-    points = with_blends(points, corner, settings)
+    points, corner = waypoints(motion.profile, lead_in.length, hole.corner.reach if hole.corner else 0.0)
+    points = with_blends(points, corner, settings, stop=hole.corner is not None and hole.corner.kind == "stop")
     if approach.length > 0:
         ahead = replace(points[0], standoff=points[0].standoff + approach.length)
         points = (ahead, replace(points[0], leg="approach"), *points[1:])
@@ -255,25 +256,29 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         out = points[-1].standoff + retract.length
         points = (*points, Waypoint(out, points[-1].psi, "depart", "retracted"))
     T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)
-    poses = [_tool_pose(T_part_base, hole, point) for point in points]
+    joints = _joints(Drilling.of(plan, hole.hole), motion.branch, points, approach.joints)
+    ends = [
+        Point(np.asarray(T_part_base @ tcp_pose(hole.hole, each.standoff, each.psi)), row, each.standoff, each.psi)
+        for each, row in zip(points, joints, strict=True)
+    ]
     moves = tuple(
-        LinearMove(
-            pose,
-            point.standoff,
-            point.psi,
+        Move(
+            end,
+            abs(point.standoff - before.standoff),
             settings.feed_plunge if point.leg in ("lead-in", "plunge") else settings.feed_retract,
             point.blend,
             point.leg,
             point.comment,
+            point.linear,
         )
-        for point, pose in zip(points[1:], poses[1:], strict=True)
+        for (before, point), end in zip(pairwise(points), ends[1:], strict=True)
     )
     return HoleProgram(
         id=hole.hole.id,
         axis=T_part_base[:3, :3] @ hole.hole.direction,
         depth=float(motion.profile.standoff[0]),
         way=way,
-        start=JointMove(approach.joints, poses[0], points[0].standoff, points[0].psi),
+        start=ends[0],
         lead_in=lead_in.length,
         moves=moves,
         corner=corner - 1,
@@ -281,5 +286,12 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
     )
 
 
-def _tool_pose(T_part_base: Array, hole: HolePlan, point: Waypoint) -> Array:
-    return np.asarray(T_part_base @ tcp_pose(hole.hole, point.standoff, point.psi) @ T_TCP_TOOL)
+def _joints(drilling: Drilling, branch: int, points: Sequence[Waypoint], first: Array) -> Array:
+    """Joints with turns at some points of a motion [rad], shape (n, 6), those at the first point as given."""
+    samples = np.concatenate([np.arange(0, len(points) - 1, 1 / BETWEEN), [len(points) - 1.0]])
+    numbers = np.arange(len(points), dtype=float)
+    standoff, psi = (
+        np.interp(samples, numbers, [getattr(each, name) for each in points]) for name in ("standoff", "psi")
+    )
+    found = joints_along(drilling, branch, standoff, psi)[::BETWEEN]
+    return np.asarray(found + FULL_TURN * np.round((first - found[0]) / FULL_TURN))

@@ -9,7 +9,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding, FindingKind, Level
 from zerorev.model.job import Settings
-from zerorev.program.neutral import HoleProgram, LinearMove, Program
+from zerorev.program.neutral import HoleProgram, Move, Program
 
 __all__ = ["CornerDepth", "calls", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
 
@@ -44,12 +44,12 @@ def corner_depth(program: Program, hole: HoleProgram) -> CornerDepth:
     A parabolic blend of radius r turns back r/2 short; a measured shortfall takes the place of r/2, and shrinks in
     proportion where the radius had to be clipped.
     """
-    settings, move = program.settings, hole.corner_move
-    share = move.blend / settings.blend if settings.blend > 0 else 0.0
-    return CornerDepth(move.blend, -move.standoff, settings.shortfall * share)
+    turning, move = program.settings.turning, hole.corner_move
+    share = move.blend / turning.radius if turning.radius > 0 else 0.0
+    return CornerDepth(move.blend, -move.standoff, turning.shortfall * share)
 
 
-def segments(hole: HoleProgram) -> list[tuple[float, float, LinearMove]]:
+def segments(hole: HoleProgram) -> list[tuple[float, float, Move]]:
     """Stand-off [m] and spin [rad] at which each linear move of a hole begins, and the move."""
     ends = [(hole.start.standoff, hole.start.psi), *((move.standoff, move.psi) for move in hole.moves)]
     return [(standoff, psi, move) for (standoff, psi), move in zip(ends, hole.moves, strict=False)]
@@ -84,7 +84,7 @@ def _said_once(program: Program, level: Level, kind: FindingKind, messages: list
 
 def _blend(program: Program) -> tuple[Finding, ...]:
     depths = [corner_depth(program, hole) for hole in program.holes]
-    wanted = program.settings.blend
+    wanted = program.settings.turning.radius
     clipped = [
         f"the blend at the corner is {depth.blend * 1e3:.2f} mm instead of {wanted * 1e3:g} mm: half the shorter of "
         "the two moves that meet there"
@@ -101,9 +101,8 @@ def _blend(program: Program) -> tuple[Finding, ...]:
 def _depth_lost(program: Program, depth: CornerDepth) -> str:
     if depth.blend == 0:
         return ""
-    measured = program.settings.blend_shortfall is not None
-    source = "as measured" if measured else "r/2, a parabolic blend; the controller's own curve may differ"
-    says = f"the blend of radius {depth.blend * 1e3:.4g} mm turns back {depth.shortfall * 1e3:.4g} mm short ({source})"
+    law = program.settings.turning.law
+    says = f"the blend of radius {depth.blend * 1e3:.4g} mm turns back {depth.shortfall * 1e3:.4g} mm short ({law})"
     if depth.lost > NOTICEABLE:
         option = "" if depth.below > 0 else "; deepen_corner places the corner that much deeper"
         return f"{says}: the hole comes out {depth.lost * 1e3:.4g} mm less deep{option}"
@@ -123,7 +122,7 @@ def _clearance(program: Program) -> tuple[Finding, ...]:
         for depth in depths
     ]
     found = _said_once(program, "warning", "clearance", messages)
-    if program.settings.deepen_corner and program.settings.shortfall > 0:
+    if program.settings.deepen_corner and program.settings.turning.shortfall > 0:
         at_target = [
             "deepen_corner is asked for, but the plan's corner lies at the target: plan the hole again"
             if depth.below <= NOTICEABLE
@@ -139,7 +138,7 @@ def _spindle(program: Program) -> tuple[Finding, ...]:
     rpm = program.settings.spindle_rpm
     if rpm is None:
         return ()
-    changes: list[tuple[float, str, LinearMove]] = []
+    changes: list[tuple[float, str, Move]] = []
     for hole in program.holes:
         for standoff, psi, move in segments(hole):
             # the tool body turns by -psi about the plunge direction, which is the sense of a right-hand drill

@@ -12,7 +12,7 @@ from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import outward_rates
 from zerorev.motion.kinematics import forward, tcp_pose
-from zerorev.program.neutral import HoleProgram, LinearMove, Program
+from zerorev.program.neutral import HoleProgram, Move, Program
 from zerorev.program.notes import notes, segments, tool_turn, turn_speed
 from zerorev.program.waypoints import GREATEST_TURN
 
@@ -56,10 +56,10 @@ def _joints(plan: Plan, hole_plan: HolePlan, program: Program, hole: HoleProgram
     motion = hole_plan.motion
     assert motion is not None
     planned = tcp_pose(hole_plan.hole, motion.profile.standoff, motion.profile.psi)
-    T_tcp_tool = np.linalg.inv(plan.tool.T_flange_tcp) @ program.T_flange_tool
-    poses = [*(T @ T_tcp_tool for T in planned), program.T_base_part @ hole.start.T_part_tool]
-    joints = np.vstack([motion.joints, hole.start.joints])
-    reached = forward(plan.robot, joints) @ program.T_flange_tool
+    points = [hole.start, *(move.end for move in hole.moves)]
+    poses = [*planned, *(program.T_base_part @ point.T_part_tcp for point in points)]
+    joints = np.vstack([motion.joints, *(point.joints for point in points)])
+    reached = forward(plan.robot, joints) @ plan.tool.T_flange_tcp
     off = max(float(np.linalg.norm(a[:3, 3] - b[:3, 3])) for a, b in zip(poses, reached, strict=True))
     turned = max(tool_turn(a, b) for a, b in zip(poses, reached, strict=True))
     found = []
@@ -109,7 +109,7 @@ def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding
     )
 
 
-def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: LinearMove) -> Array:
+def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: Move) -> Array:
     """Rates d theta / d path along one move [rad/m], shape (N, 6); the sign is that of moving out."""
     assert hole_plan.motion is not None
     s = np.linspace(standoff, move.standoff, SAMPLES)
@@ -127,14 +127,14 @@ def _floored(feed_mm_s: float) -> str:
 def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
     """No move may turn the tool further than the short way round is certain, and each turns as its spin says."""
     found = []
-    pose = hole.start.T_part_tool
+    pose = hole.start.T_part_tcp
     for number, (_, psi, move) in enumerate(segments(hole), start=1):
-        turn, by_pose = abs(move.psi - psi), tool_turn(pose, move.T_part_tool)
+        turn, by_pose = abs(move.psi - psi), tool_turn(pose, move.end.T_part_tcp)
         if turn > GREATEST_TURN + ROUND_OFF or abs(turn - by_pose) > 1e-6:
             message = f"linear move {number} turns the tool by {np.rad2deg(turn):.2f} deg, its poses differ by "
             message += f"{np.rad2deg(by_pose):.2f} deg; at most {np.rad2deg(GREATEST_TURN):g} deg are allowed"
             found.append(Finding("error", "move_turn", message, hole.id))
-        pose = move.T_part_tool
+        pose = move.end.T_part_tcp
     if turn_speed(hole) > USUAL_TURN_SPEED:
         message = f"the tool turns at {np.rad2deg(turn_speed(hole)):.0f} deg/s: see that the controller's limit of the "
         message += "orientation speed allows it, or it will throttle the feed"

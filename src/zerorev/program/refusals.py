@@ -4,10 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from zerorev.errors import NotExportableError
+from zerorev.model.corner import CONTROLLERS, controller_of
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan, named_holes
+from zerorev.model.robot import Robot
 
-__all__ = ["left_out", "refusals"]
+__all__ = ["left_out", "refusals", "refuse_other_makers"]
+
+
+def refuse_other_makers(controller: str, robot: Robot) -> None:
+    """Let only the robots pass that a controller can drive: those of its maker.
+
+    Args:
+        controller: one of `CONTROLLERS`.
+        robot: the arm.
+
+    Raises:
+        NotExportableError: another maker's robot.
+    """
+    known, own = CONTROLLERS[controller], controller_of(robot.manufacturer)
+    if own is not known:
+        made = robot.manufacturer
+        by = f"by {made}" if made.strip() else "of a maker that its file does not name"
+        why = f"the robot {robot.name} is {by}, and {known.language} runs on {known.maker} controllers alone"
+        raise NotExportableError((f"{why} (manufacturer: {known.maker} in its file)",))
 
 
 def left_out(plan: Plan, refused: Mapping[str | None, str]) -> list[Finding]:

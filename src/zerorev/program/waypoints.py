@@ -1,4 +1,4 @@
-"""From a profile to the points of a program: lead-in, breakpoints, splits, and the blend at each."""
+"""From a profile to the points of a program: lead-in, breakpoints, splits, joint moves, and the blend at each."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ class Waypoint:
         leg: part of the motion that ends here; of the first point, the part that begins.
         comment: what the point is.
         blend: radius [m]; 0 is an exact stop.
+        linear: whether the tip goes there straight; else all joints move evenly.
     """
 
     standoff: float
@@ -36,12 +37,18 @@ class Waypoint:
     leg: Leg
     comment: str
     blend: float = 0.0
+    linear: bool = True
 
 
-def waypoints(profile: Profile, lead_in: float) -> tuple[tuple[Waypoint, ...], int]:
-    """The points of a motion, the lead-in [m] before it, and the index of the corner among them.
+def waypoints(profile: Profile, lead_in: float, reach: float = 0.0) -> tuple[tuple[Waypoint, ...], int]:
+    """The points of a motion, the lead-in before it, and the index of the corner among them.
 
     Each segment is split into equal moves that turn the tool by `GREATEST_TURN` at most.
+
+    Args:
+        profile: of the motion.
+        lead_in: its length [m].
+        reach: how far from the corner joint moves begin and end [m]; 0: there are none.
     """
     start = Waypoint(float(profile.standoff[0]), float(profile.psi[0]), "lead-in", "start of the stroke")
     points = [start]
@@ -56,10 +63,29 @@ def waypoints(profile: Profile, lead_in: float) -> tuple[tuple[Waypoint, ...], i
         last = k == len(profile.standoff) - 1
         comment = _corner(profile) if k == profile.corner else "end of the stroke" if last else "breakpoint"
         end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, comment)
-        points.extend(_split(points[-1], end))
+        if reach > 0 and k == profile.corner:
+            points.extend(_split(points[-1], _before(points[-1], end, reach)))
+            points.append(replace(end, linear=False))
+        elif reach > 0 and k == profile.corner + 1:
+            leave = replace(_before(end, points[-1], reach), leg=leg, comment="end of the joint moves", linear=False)
+            points.append(leave)
+            points.extend(_split(leave, end))
+        else:
+            points.extend(_split(points[-1], end))
         if k == profile.corner:
             corner = len(points) - 1
     return tuple(points), corner
+
+
+def _before(start: Waypoint, end: Waypoint, reach: float) -> Waypoint:
+    """The point so far [m] before the end of a straight piece of a motion."""
+    share = reach / abs(end.standoff - start.standoff)
+    return replace(
+        end,
+        standoff=end.standoff + share * (start.standoff - end.standoff),
+        psi=end.psi + share * (start.psi - end.psi),
+        comment="begin of the joint moves",
+    )
 
 
 def _corner(profile: Profile) -> str:
@@ -83,8 +109,10 @@ def _split(start: Waypoint, end: Waypoint) -> list[Waypoint]:
     return [*between, end]
 
 
-def with_blends(points: tuple[Waypoint, ...], corner: int, settings: Settings) -> tuple[Waypoint, ...]:
-    """The points with a blend at every inner one, clipped to half the shorter neighbouring move.
+def with_blends(
+    points: tuple[Waypoint, ...], corner: int, settings: Settings, *, stop: bool = False
+) -> tuple[Waypoint, ...]:
+    """The points with a blend at every inner one, clipped to a share of the shorter neighbouring move.
 
     A controller clips a greater radius in just this way, without telling; written here, the depth lost is known.
 
@@ -92,10 +120,12 @@ def with_blends(points: tuple[Waypoint, ...], corner: int, settings: Settings) -
         points: in order of motion; the first and the last stay exact stops.
         corner: index of the corner.
         settings: the radii that the job asks for.
+        stop: whether the corner is an exact stop all the same.
     """
-    lengths = np.abs(np.diff([point.standoff for point in points]))
+    lengths, share = np.abs(np.diff([point.standoff for point in points])), settings.blend_share
+    at_corner = 0.0 if stop else settings.turning.radius
     radii = [
-        min(settings.blend if i == corner else settings.passing_blend, lengths[i - 1] / 2, lengths[i] / 2)
+        min(at_corner if i == corner else settings.passing_blend, share * lengths[i - 1], share * lengths[i])
         for i in range(1, len(points) - 1)
     ]
     inner = [replace(point, blend=float(radius)) for point, radius in zip(points[1:-1], radii, strict=True)]

@@ -173,8 +173,8 @@ class _Pool:
         if self.size != 1:
             drilling, settings = drilling.resized(settings, 1 / self.size)
         self.settings, self.profile = settings, drilling.hole.profile
-        if settings.corner:
-            self.drilling = drilling.nearer(settings.corner)
+        if settings.corner_standoff:
+            self.drilling = drilling.nearer(settings.corner_standoff)
         else:
             self.drilling = self.real.drilling if self.size == 1 else drilling.without_motion()
         self.order = Order(self.drilling, settings)
@@ -210,13 +210,13 @@ class _Pool:
     def given(self) -> list[Candidate]:
         """A given motion on any branch on which it could have been searched for."""
         settings, profile = self.settings, self.profile
-        if profile is None or abs(profile.standoff.min() - settings.corner) > SAME_PLACE:
+        if profile is None or abs(profile.standoff.min() - settings.corner_standoff) > SAME_PLACE:
             return []
         kinked = settings.legs == "straight" and profile.psi.size > 3
         steep = settings.legs == "free" and np.abs(profile.twist_rate).max() > settings.max_twist
         if kinked or steep or np.abs(profile.psi).max() > (settings.psi_bound or np.inf):
             return []
-        down = Profile(profile.standoff - settings.corner, profile.psi)
+        down = Profile(profile.standoff - settings.corner_standoff, profile.psi)
         branches = range(8) if self.drilling.hole.branch is None else (self.drilling.hole.branch,)
         found = [self.order.candidate(down, branch) for branch in branches]
         return [one for one in found if one is not None]
@@ -354,20 +354,20 @@ class _Pool:
 
     def from_the_target(self, found: Candidate | None) -> Candidate | None:
         """A motion with its stand-off counted from the hole's own target."""
-        if found is None or (self.size == 1 and not self.settings.corner):
+        if found is None or (self.size == 1 and not self.settings.corner_standoff):
             return found
-        if self.settings.corner:
+        if self.settings.corner_standoff:
             return self.real.candidate(self._up(found.profile), found.branch)
         return self.real.judged(self._up(found.profile), found.branch, found.evaluation.resized(self.size))
 
     def as_drilled(self, found: Deepest) -> Deepest:
         """A stroke counted from the hole's own target."""
-        depth = (found.depth + self.settings.corner) * self.size
-        beyond = max(found.beyond_cap + self.settings.corner, 0.0) * self.size
-        at_most = None if found.at_most is None else max(found.at_most + self.settings.corner, 0.0) * self.size
+        depth = (found.depth + self.settings.corner_standoff) * self.size
+        beyond = max(found.beyond_cap + self.settings.corner_standoff, 0.0) * self.size
+        at_most = None if found.at_most is None else max(found.at_most + self.settings.corner_standoff, 0.0) * self.size
         if found.profile is None or depth <= 0:
             return Deepest(0.0, beyond_cap=beyond, at_most=at_most)
         return replace(found, depth=depth, profile=self._up(found.profile), beyond_cap=beyond, at_most=at_most)
 
     def _up(self, profile: Profile) -> Profile:
-        return Profile((profile.standoff + self.settings.corner) * self.size, profile.psi)
+        return Profile((profile.standoff + self.settings.corner_standoff) * self.size, profile.psi)

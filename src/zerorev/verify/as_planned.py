@@ -8,32 +8,30 @@ the plan by geometry alone, so that a fault of `export` does not certify itself.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from decimal import Decimal
 from typing import NamedTuple
 
 import numpy as np
 
 from zerorev.model._arrays import Array, rotation_rpy, transform
 from zerorev.model.plan import HolePlan, Motion, Plan
-from zerorev.model.written import Six, WrittenHole, WrittenProgram
+from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenProgram
 from zerorev.verify.arm import branch_of, skeleton
+from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slack
 
 __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
-LENGTH = 3e-7  # [m]: four decimals of a millimetre in three coordinates, of the point and of $BASE
-BY_AXES = 2e-6  # [m]: five decimals of a degree in six axes, over a lever of up to three metres
-ANGLE = float(np.deg2rad(3e-4))  # four decimals of a degree in three angles
-FRAME_ANGLE = float(np.deg2rad(3e-6))  # six decimals
 FEED = 1e-6  # [m/s]: six decimals
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
-AS_WRITTEN = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
-"""The tool frame of a program, X along the plunge, in the tcp frame (docs/howto/program.md)."""
+NUMBERED = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+"""The tool frame of a program that has only its number, Z along the plunge, in the tcp frame."""
 
 
 class Places(NamedTuple):
     """The points of a hole's moves, the first of them where its axis values lead; n points.
 
     Attributes:
-        T_base_tool: poses of the program's tool frame, shape (n, 4, 4), translation [m].
+        T_base_tcp: poses of the tcp frame, shape (n, 4, 4), translation [m].
         standoff: along the planned axis [m], shape (n,).
         first: index of the point at which the lead-in begins; before it is the approach, in the air.
         lead: index of the point at which the stroke begins.
@@ -41,7 +39,7 @@ class Places(NamedTuple):
         last: index of the point at which the stroke ends; after it the tool is retracted, in the air.
     """
 
-    T_base_tool: Array
+    T_base_tcp: Array
     standoff: Array
     first: int
     lead: int
@@ -58,15 +56,22 @@ def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: Wr
         program: whose frames the points are given in.
         written: the moves.
     """
-    body = skeleton(plan.robot.arm, np.deg2rad(_floats(written.axes_deg))[None])
-    begin = transform(body.R_base_flange[:, :, 0], body.flange[:, 0]) @ _frame(program.tool_mm_deg)
-    T_base_part = np.linalg.inv(_world(plan)) @ _frame(program.base_mm_deg)
-    poses = np.stack([begin, *(T_base_part @ _frame(move.point_mm_deg) for move in written.moves)])
+    T_flange_tool = _tool(plan, program)
+    T_base_part = np.linalg.inv(_world(plan)) @ _part(plan, program)
+
+    def pose(end: WrittenFrame | WrittenJoints) -> Array:
+        if isinstance(end, WrittenFrame):
+            return T_base_part @ frame_of(end)
+        body = skeleton(plan.robot.arm, joints_of(plan.robot, end)[None])
+        return transform(body.R_base_flange[:, :, 0], body.flange[:, 0]) @ T_flange_tool
+
+    T_tool_tcp = _axes(plan, T_flange_tool).T  # a rotation
+    poses = np.stack([pose(written.start), *(pose(move.end) for move in written.moves)]) @ T_tool_tcp
     hole = hole_plan.hole
     standoff = (hole.target - poses[:, :3, 3]) @ hole.direction
     corner = int(np.argmin(standoff))
     # on the stroke and its lead-in every point but the corner is blended
-    stops = [k for k, move in enumerate(written.moves[:-1], start=1) if not move.blend_mm and k != corner]
+    stops = [k for k, move in enumerate(written.moves[:-1], start=1) if move.stops and k != corner]
     first, last = int(1 in stops), len(poses) - 1 - int(len(poses) - 2 in stops)
     # where the tool is already at the start of the stroke, there is no lead-in
     lead = first + int(np.argmin(np.abs(standoff[first : corner + 1] - hole.depth)))
@@ -74,14 +79,16 @@ def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: Wr
 
 
 def frames_as_planned(plan: Plan, program: WrittenProgram) -> Iterator[str]:
-    """$TOOL and $BASE must be the plan's."""
-    for name, planned, printed in (
-        ("$TOOL", plan.tool.T_flange_tcp @ AS_WRITTEN, program.tool_mm_deg),
-        ("$BASE", _world(plan) @ plan.T_base_part, program.base_mm_deg),
-    ):
-        off, turned = _apart(planned[None], _frame(printed)[None])
-        if off[0] > LENGTH or turned[0] > FRAME_ANGLE:
-            yield f"{name} of the program is {_mm(off[0])} and {_deg(turned[0])} off the plan's"
+    """The tool frame and the part frame must be the plan's, but for how a dialect names the axes of the tool."""
+    if program.tool is not None:
+        printed = frame_of(program.tool)
+        off, turned = _apart((plan.tool.T_flange_tcp @ _axes(plan, printed))[None], printed[None])
+        if off[0] > length_slack(plan.robot, program.tool) or turned[0] > angle_slack(plan.robot, program.tool):
+            yield f"the tool frame of the program is {_mm(off[0])} and {_deg(turned[0])} off the plan's"
+    if program.base is not None:
+        off, turned = _apart((_world(plan) @ plan.T_base_part)[None], frame_of(program.base)[None])
+        if off[0] > length_slack(plan.robot, program.base) or turned[0] > angle_slack(plan.robot, program.base):
+            yield f"the part frame of the program is {_mm(off[0])} and {_deg(turned[0])} off the plan's"
 
 
 def moves_as_planned(
@@ -110,11 +117,13 @@ def moves_as_planned(
     knots = profile.distance
     turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
     psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
-    off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tool)
-    slack = np.where(np.arange(len(distance)) == 0, BY_AXES, LENGTH)
+    off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
+    ends = [written.start, *(move.end for move in written.moves)]
+    slack = np.array([length_slack(plan.robot, end) for end in ends])
+    slack_angle = np.array([angle_slack(plan.robot, end) for end in ends])
     steepest = float(np.abs(profile.twist_rate).max())
-    for name, apart, angle, length in zip(names, off, turned, slack, strict=True):
-        if apart > length or angle > ANGLE + length * steepest:
+    for name, apart, angle, length, little in zip(names, off, turned, slack, slack_angle, strict=True):
+        if apart > length or angle > little + length * steepest:
             yield f"{name} lies {_mm(apart)} off the planned axis, the tool turned {_deg(angle)} from the planned spin"
     for standoff, knot in zip(profile.standoff, knots, strict=True):
         if (np.abs(distance - knot) > slack).all():
@@ -123,26 +132,53 @@ def moves_as_planned(
     if (
         distance[at.first] < -settings.lead_in - slack[at.first]
         or in_the_air[0] > settings.approach + slack[0]
-        or abs(distance[at.last] - knots[-1]) > LENGTH
-        or in_the_air[1] > settings.retract + LENGTH
+        or abs(distance[at.last] - knots[-1]) > slack[at.last]
+        or in_the_air[1] > settings.retract + slack[at.last]
     ):
         yield f"the program runs from {_mm(at.standoff[0])} to {_mm(at.standoff[-1])} of stand-off, beyond the plan"
     for name, turn in zip(names[1:], np.abs(np.diff(psi)), strict=True):
         if turn > TURN:
             yield f"{name} turns the tool by {_deg(turn)}: the short way round is another one"
-    if (branch := branch_of(plan.robot.arm, np.deg2rad(_floats(written.axes_deg)))) != motion.branch:
+    if (branch := branch_of(plan.robot.arm, joints_of(plan.robot, written.start))) != motion.branch:
         yield f"the axis values at line {written.line} are of branch {branch}, the plan says {motion.branch}"
 
+    stops = hole_plan.corner is not None and hole_plan.corner.kind == "stop"
+    yield from _blends_differ(plan, written, at, steps, 0.0 if stops else settings.turning.radius)
+    yield from _paces_differ(plan, written, at, steps)
+
+
+def _blends_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array, at_corner: float) -> Iterator[str]:
+    """Blends must be as large as asked for, as far as a share of the shorter neighbouring move allows."""
+    settings = plan.settings
     for k, move in enumerate(written.moves[:-1], start=1):
-        asked = settings.blend if k == at.corner else 0.0 if k in (at.first, at.last) else settings.passing_blend
-        fits = min(asked, abs(steps[k - 1]) / 2, abs(steps[k]) / 2)
-        blend = float(move.blend_mm) * 1e-3
-        if abs(blend - fits) > LENGTH or (blend > 0) != (asked > 0):
-            yield f"line {move.line} is blended by {_mm(blend)}, the plan asks for {_mm(fits)}"
+        asked = at_corner if k == at.corner else 0.0 if k in (at.first, at.last) else settings.passing_blend
+        fits = settings.blend_share * float(min(abs(steps[k - 1]), abs(steps[k])))
+        fits = min(asked, fits)
+        if move.stops != (asked == 0):
+            yield f"line {move.line} {'stops' if move.stops else 'is blended'}, the plan asks for {_mm(fits)} of blend"
+        elif move.blend_mm is not None:
+            blend = float(move.blend_mm) * 1e-3
+            if abs(blend - fits) > length_slack(plan.robot, move.end) + _half_a_unit(move.blend_mm) * 1e-3:
+                yield f"line {move.line} is blended by {_mm(blend)}, the plan asks for {_mm(fits)}"
+
+
+def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) -> Iterator[str]:
+    """Feeds must be the job's; of a move that has a time, what comes of that."""
     for k, move in enumerate(written.moves):
-        feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
-        if abs(float(move.feed_m_s) - feed) > FEED:
-            yield f"line {move.line} has a feed of {float(move.feed_m_s) * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+        feed = plan.settings.feed_plunge if at.first <= k < at.corner else plan.settings.feed_retract
+        value, unit = move.pace
+        if unit == "%":
+            continue  # of what the joints can: compared with what `export` writes
+        found = float(value) if unit == "m/s" else abs(float(steps[k])) / float(value) if value > 0 else np.inf
+        # of a time, the digits of its last place, and of both ends
+        off = _half_a_unit(value) if unit == "m/s" else found * _half_a_unit(value) / max(float(value), 1e-9)
+        slack = FEED + off + (0.0 if unit == "m/s" else 2e-6 / max(float(value), 1e-9))
+        if abs(found - feed) > slack:
+            yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+
+
+def _half_a_unit(number: Decimal) -> float:
+    return 0.5 * 10.0 ** int(number.as_tuple().exponent)
 
 
 def _world(plan: Plan) -> Array:
@@ -153,13 +189,30 @@ def _world(plan: Plan) -> Array:
     return transform(rotation_rpy(roll, pitch, yaw), np.array([x, y, z]))
 
 
+def _tool(plan: Plan, program: WrittenProgram) -> Array:
+    """The tool frame of a program in the flange frame, shape (4, 4), translation [m]."""
+    return plan.tool.T_flange_tcp @ NUMBERED if program.tool is None else frame_of(program.tool)
+
+
+def _axes(plan: Plan, T_flange_tool: Array) -> Array:
+    """How the axes of a program's tool lie in the tcp frame: each along one of that, shape (4, 4)."""
+    axes = np.eye(4)
+    axes[:3, :3] = np.rint(plan.tool.T_flange_tcp[:3, :3].T @ T_flange_tool[:3, :3])
+    return axes
+
+
+def _part(plan: Plan, program: WrittenProgram) -> Array:
+    """The part frame of a program, from where it counts, shape (4, 4), translation [m]."""
+    return _world(plan) @ plan.T_base_part if program.base is None else frame_of(program.base)
+
+
 def _poses(hole_plan: HolePlan, standoff: Array, psi: Array) -> Array:
-    """The tool frame as written at stand-offs [m] and spins [rad], each (n,): shape (n, 4, 4)."""
+    """The tcp frame at stand-offs [m] and spins [rad], each (n,): shape (n, 4, 4)."""
     hole = hole_plan.hole
     y = np.cos(psi)[:, None] * hole.psi_zero + np.sin(psi)[:, None] * np.cross(-hole.direction, hole.psi_zero)
-    x = np.broadcast_to(hole.direction, y.shape)
+    z = np.broadcast_to(-hole.direction, y.shape)
     T = np.broadcast_to(np.eye(4), (len(psi), 4, 4)).copy()
-    T[:, :3, :3] = np.stack([x, y, np.cross(x, y)], axis=-1)
+    T[:, :3, :3] = np.stack([np.cross(y, z), y, z], axis=-1)
     T[:, :3, 3] = hole.target - standoff[:, None] * hole.direction
     return T
 
@@ -169,16 +222,6 @@ def _apart(first: Array, second: Array) -> tuple[Array, Array]:
     off = np.linalg.norm(first[:, :3, 3] - second[:, :3, 3], axis=1)
     chord = np.linalg.norm(first[:, :3, :3] - second[:, :3, :3], axis=(1, 2)) / np.sqrt(8)
     return off, 2 * np.arcsin(np.minimum(chord, 1.0))
-
-
-def _frame(values_mm_deg: Six) -> Array:
-    values = _floats(values_mm_deg)
-    A, B, C = np.deg2rad(values[3:])
-    return transform(rotation_rpy(float(C), float(B), float(A)), values[:3] * 1e-3)
-
-
-def _floats(values: Six) -> Array:
-    return np.array([float(value) for value in values])
 
 
 def _mm(length: float) -> str:

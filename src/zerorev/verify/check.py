@@ -155,7 +155,7 @@ def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -
 def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:
     """The inner breakpoints at which the motion does not stop, and the radius [m] of the blend at each."""
     inner = range(1, profile.standoff.size - 1)
-    radii = [(k, settings.blend if k == profile.corner else settings.passing_blend) for k in inner]
+    radii = [(k, settings.corner_blend if k == profile.corner else settings.passing_blend) for k in inner]
     return [(k, radius) for k, radius in radii if radius > 0]
 
 

@@ -65,8 +65,8 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
     corner = standoff.min()
     if corner > PLACE_TOLERANCE * robot.size:
         yield f"the corner lies {_mm(corner)} short of the target"
-    if corner < settings.corner - PLACE_TOLERANCE * robot.size:
-        yield f"the corner lies {_mm(-corner)} behind the target, {_mm(-settings.corner)} are allowed"
+    if corner < settings.corner_standoff - PLACE_TOLERANCE * robot.size:
+        yield f"the corner lies {_mm(-corner)} behind the target, {_mm(-settings.corner_standoff)} are allowed"
     branch = branch_of(robot.arm, motion.joints[0])
     if branch != motion.branch:
         yield f"the joints at the start are of branch {branch}, the plan says {motion.branch}"

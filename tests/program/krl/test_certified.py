@@ -25,6 +25,7 @@ from zerorev.verify.certificate.certify import certify_hole
 from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.certificate.program import certify_program, certify_program_hole
+from zerorev.verify.printed import joints_of
 
 TURN_ROUND = re.compile(r"A\d turns round: it moves the other way")
 
@@ -43,10 +44,10 @@ def certify_motion_alone(plan, text):
     """The proof without the comparison with the plan: of the last hole."""
     program, hole_plan = read_krl(text), plan.holes[-1]
     (*_, hole) = program.holes
-    axes = np.deg2rad([[float(angle) for angle in hole.axes_deg]])
+    axes = joints_of(plan.robot, hole.start)[None]
     with ball_arithmetic():
         at = places(plan, hole_plan, program, hole)
-        motion = written_motion(plan.robot.arm, program, hole, hole_plan.hole, at)
+        motion = written_motion(plan, program, hole, hole_plan.hole, at)
         return proof.prove(plan.robot, motion, axes)
 
 
@@ -321,16 +322,16 @@ def swapped(text, old, new):
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lambda t: swapped(t, "X 100.0000,Y", "X 100.0010,Y"), r"\$TOOL of the program is 0\.001 mm"),
-        (lambda t: swapped(t, "C 0.000000}\n$BASE", "C 0.000010}\n$BASE"), r"\$TOOL of the program is"),
-        (lambda t: swapped(t, "$BASE={FRAME: X 0.0000", "$BASE={FRAME: X 0.0010"), r"\$BASE of the program is"),
+        (lambda t: swapped(t, "X 100.0000,Y", "X 100.0010,Y"), r"the tool frame of the program is 0\.001 mm"),
+        (lambda t: swapped(t, "C 0.000000}\n$BASE", "C 0.000010}\n$BASE"), r"the tool frame of the program is"),
+        (lambda t: swapped(t, "$BASE={FRAME: X 0.0000", "$BASE={FRAME: X 0.0010"), r"the part frame of the program is"),
         (lambda t: edited(t, line_of(t, "target"), "X", 5e-3), "no point of the program lies at the plan's breakpoint"),
         (lambda t: edited(t, line_of(t, "target"), "Y", 1e-3), "off the planned axis"),
         (lambda t: edited(t, line_of(t, "target"), "B", 1e-3), "off the planned axis"),
         (lambda t: edited(t, line_of(t, "target"), "C", 1e-3), "off the planned axis"),
         (lambda t: edited(t, line_of(t, "end of"), "X", 1e-1), "beyond the plan|off the planned axis"),
         (lambda t: swapped(t, "$APO.CDIS=1.0000", "$APO.CDIS=1.5000"), "is blended by 1.5 mm, the plan asks for 1 mm"),
-        (lambda t: swapped(t, " C_DIS ; target", " ; target"), "is blended by 0 mm, the plan asks for 1 mm"),
+        (lambda t: swapped(t, " C_DIS ; target", " ; target"), "stops, the plan asks for 1 mm of blend"),
         (lambda t: swapped(t, "$VEL.CP=0.005000", "$VEL.CP=0.006000"), "has a feed of 6 mm/s, the plan 5 mm/s"),
         (lambda t: re.sub(r"A6 (-?[\d.]+)", lambda m: f"A6 {float(m[1]) - 360:.5f}", t, count=1), "A6 .* stands"),
         (lambda t: re.sub(r"A2 (-?[\d.]+)", lambda m: f"A2 {float(m[1]) + 0.1:.5f}", t, count=1), "off the planned"),

@@ -109,15 +109,17 @@ def check_the_reader(text, ptp, moves):
     """What the product reads back is what the other reader reads."""
     program = read_krl(text)
     (hole,) = program.holes
-    assert [float(angle) for angle in hole.axes_deg] == list(ptp.axes)
+    assert [float(angle) for angle in hole.start.values] == list(ptp.axes)
     for move, other in zip(hole.moves, moves, strict=True):
-        assert [float(number) for number in move.point_mm_deg] == [other.values[name] for name in "XYZABC"]
+        assert [float(number) for number in (*move.end.xyz_mm, *move.end.turn)] == [
+            other.values[name] for name in "XYZABC"
+        ]
         assert float(move.blend_mm) == (other.state["$APO.CDIS"] if other.blended else 0)
-        assert (float(move.feed_m_s), move.line) == (other.state["$VEL.CP"], other.line)
-    for name, frame in (("$TOOL", program.tool_mm_deg), ("$BASE", program.base_mm_deg)):
-        R = rotation(*(float(angle) for angle in frame[3:]))
+        assert (float(move.pace.value), move.line) == (other.state["$VEL.CP"], other.line)
+    for name, frame in (("$TOOL", program.tool), ("$BASE", program.base)):
+        R = rotation(*(float(angle) for angle in frame.turn))
         np.testing.assert_allclose(ptp.state[name][:3, :3], R, rtol=0, atol=1e-12)
-        assert list(ptp.state[name][:3, 3]) == [float(length) for length in frame[:3]]
+        assert list(ptp.state[name][:3, 3]) == [float(length) for length in frame.xyz_mm]
 
 
 def check_angles(moves, profile):
@@ -307,7 +309,7 @@ def test_no_program_at_all(content, tmp_path):
 
 def test_numbers_are_the_decimals_that_are_printed(text):
     move = read_krl(text.replace("Y 300.0000", "Y 300.0001", 1)).holes[0].moves[0]
-    assert move.point_mm_deg[1] == Decimal("300.0001")
+    assert move.end.xyz_mm[1] == Decimal("300.0001")
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -12,7 +12,7 @@ from zerorev.model.controller import Call, Calls
 from zerorev.model.dynamics import Load
 from zerorev.model.job import Settings
 from zerorev.program.krl.names import KEPT
-from zerorev.program.krl.text import aggregate, degrees, fixed, frame_angles
+from zerorev.program.krl.text import T_TCP_TOOL, aggregate, degrees, fixed, frame_angles
 from zerorev.program.neutral import Program
 
 __all__ = [
@@ -43,9 +43,9 @@ def frames_and_load(program: Program) -> list[str]:
 
 def tool_and_load(program: Program) -> list[str]:
     """$TOOL, its number, and what it weighs."""
-    lines = [f"$TOOL={frame(program.T_flange_tool)}"]
+    lines = [f"$TOOL={frame(program.tool.T_flange_tcp @ T_TCP_TOOL)}"]
     if (number := program.settings.tool_number) is not None:
-        load = f"LOAD_DATA[{number}]" if program.load is None else _load(program.load)
+        load = f"LOAD_DATA[{number}]" if program.tool.load is None else _load(program.tool.load)
         lines += [f"$ACT_TOOL={number}", f"$LOAD={load}"]
     return lines
 

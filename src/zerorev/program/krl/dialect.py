@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from zerorev.model.corner import CONTROLLERS
 from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
@@ -11,7 +12,7 @@ from zerorev.program.krl.modules import parts_called, read_modules
 from zerorev.program.krl.names import identifier
 from zerorev.program.krl.retract import retract_to_krl
 from zerorev.program.krl.source import alike
-from zerorev.program.krl.write import krl_modules, refuse_other_makers
+from zerorev.program.krl.write import krl_modules
 from zerorev.program.neutral import Program
 from zerorev.program.retract import Retract
 
@@ -37,4 +38,4 @@ def _retract(retract: Retract, name: str, version: str) -> ProgramFile:
     return ProgramFile(name + SUFFIX, retract_to_krl(retract, name, version))
 
 
-KRL = Dialect("krl", "KUKA", SUFFIX, alike, identifier, refuse_other_makers, _write, _read, _parts, _retract)
+KRL = Dialect(CONTROLLERS["krl"], SUFFIX, alike, identifier, _write, _read, _parts, _retract)

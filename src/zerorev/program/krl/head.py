@@ -33,13 +33,13 @@ def head(program: Program, findings: tuple[Finding, ...], version: str) -> list[
     """The comment block: what an operator should read before pressing start."""
     settings = program.settings
     spindle = "not given" if settings.spindle_rpm is None else f"{settings.spindle_rpm:g} rev/min"
-    blend = f"{settings.blend * 1e3:g} mm" if settings.blend > 0 else "none: exact stop"
+    blend = f"{settings.corner_blend * 1e3:g} mm" if settings.corner_blend > 0 else "none: exact stop"
     deepened = ", corner placed deeper by the depth lost to the blend" if settings.deepen_corner else ""
     reversals = sum(sum(hole.reversals_per_joint) for hole in program.holes)
     facts = (
         ("Plan      ", program.name),
-        ("Robot     ", f"{program.manufacturer} {program.model} ({program.robot})"),
-        ("Tool      ", program.tool),
+        ("Robot     ", f"{program.robot.manufacturer} {program.robot.model} ({program.robot.name})"),
+        ("Tool      ", program.tool.name),
         ("Feeds     ", f"plunge {settings.feed_plunge * 1e3:g} mm/s, retract {settings.feed_retract * 1e3:g} mm/s"),
         ("Spindle   ", spindle),
         ("Blend     ", f"{blend} at the target{deepened}"),

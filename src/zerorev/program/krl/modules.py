@@ -32,7 +32,7 @@ def read_modules(files: Sequence[tuple[str, str]]) -> WrittenProgram:
     read = [(_short(name), read_krl(text, name)) for text, name in others]
     first, last = read[0][1], read[-1][1]
     for name, part in read:
-        if (part.tool_mm_deg, part.base_mm_deg) != (first.tool_mm_deg, first.base_mm_deg):
+        if (part.tool, part.base) != (first.tool, first.base):
             accepted = "the frames of the first part"
             raise InputError("$TOOL or $BASE differs from that of the first part", where=name, accepted=accepted)
     head = [_in_file(statement, _short(file)) for statement in starter[1]]
@@ -50,7 +50,7 @@ def read_modules(files: Sequence[tuple[str, str]]) -> WrittenProgram:
     )
     tail = tuple(_in_file(each, read[-1][0]) for each in last.tail)
     sizes = tuple(len(part.holes) for _, part in read)
-    return WrittenProgram(starter[0], first.tool_mm_deg, first.base_mm_deg, holes, tuple(head), tail, sizes)
+    return WrittenProgram(starter[0], first.tool, first.base, holes, tuple(head), tail, sizes)
 
 
 def parts_called(text: str, file: str = "program") -> tuple[str, ...]:

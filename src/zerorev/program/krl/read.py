@@ -14,7 +14,16 @@ from decimal import Decimal
 from typing import NoReturn
 
 from zerorev.errors import InputError
-from zerorev.model.written import Six, Statement, Word, WrittenHole, WrittenMove, WrittenProgram
+from zerorev.model.written import (
+    Pace,
+    Statement,
+    Word,
+    WrittenFrame,
+    WrittenHole,
+    WrittenJoints,
+    WrittenMove,
+    WrittenProgram,
+)
 from zerorev.program.krl.names import KEPT
 from zerorev.program.krl.source import shape, statements, words
 
@@ -56,7 +65,7 @@ def read_starter(text: str, file: str = "program") -> tuple[str, tuple[Statement
 @dataclass
 class _Hole:
     line: int
-    axes: Six
+    start: WrittenJoints
     way: tuple[Statement, ...] = ()
     moves: list[WrittenMove] = field(default_factory=list)
     statements: list[Statement] = field(default_factory=list)
@@ -139,7 +148,7 @@ class _Reading:
             before = (*self.hole.way, *self.hole.statements)
         else:
             self.close()
-        self.hole = _Hole(self.line, _six(numbers[:6]), before)
+        self.hole = _Hole(self.line, WrittenJoints(numbers[:6]), before)
 
     def go_straight(self, _: str, numbers: tuple[Decimal, ...]) -> None:
         self.move(numbers, blended=False)
@@ -154,7 +163,7 @@ class _Reading:
             if name not in self.settings:
                 self.refuse(f"a LIN before {name} is set")
         blend = self.settings["$APO.CDIS"][0] if blended else Decimal(0)
-        self.hole.moves.append(WrittenMove(self.line, _six(numbers), blend, self.settings["$VEL.CP"][0]))
+        self.hole.moves.append(WrittenMove(self.line, _frame(numbers), Pace(self.settings["$VEL.CP"][0]), blend))
 
     def finish(self, *_: object) -> None:
         if self.hole is not None and not self.hole.moves:
@@ -169,14 +178,14 @@ class _Reading:
             return
         if hole.moves[-1].blend_mm:
             self.refuse(f"the last move of a hole (line {hole.moves[-1].line}) is blended", accepted="no C_DIS")
-        self.holes.append(WrittenHole(hole.line, hole.axes, tuple(hole.moves), tuple(hole.statements), hole.way))
+        self.holes.append(WrittenHole(hole.line, hole.start, tuple(hole.moves), tuple(hole.statements), hole.way))
 
     def end(self) -> WrittenProgram:
         if not self.ended or not self.name:
             self.refuse("the program is not complete", accepted="DEF to END")
         if not self.holes:
             self.refuse("the program has no holes")
-        tool, base = (_six(self.settings[name]) for name in ("$TOOL", "$BASE"))
+        tool, base = (_frame(self.settings[name]) for name in ("$TOOL", "$BASE"))
         return WrittenProgram(self.name, tool, base, tuple(self.holes), tuple(self.head), self.tail)
 
     def refuse_form(self, statement: Statement) -> NoReturn:
@@ -223,9 +232,9 @@ def _name(words: tuple[Word, ...]) -> str:
     return str(words[0])
 
 
-def _six(numbers: tuple[Decimal, ...]) -> Six:
-    a, b, c, d, e, f = numbers
-    return a, b, c, d, e, f
+def _frame(numbers: tuple[Decimal, ...]) -> WrittenFrame:
+    """X, Y, Z and A, B, C."""
+    return WrittenFrame(numbers[:3], numbers[3:])
 
 
 POINT, AXES = "X 0,Y 0,Z 0,A 0,B 0,C 0", "A1 0,A2 0,A3 0,A4 0,A5 0,A6 0"

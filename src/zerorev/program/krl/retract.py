@@ -6,7 +6,8 @@ from zerorev.program.krl.controller import AT_REST, base, header, tool_and_load
 from zerorev.program.krl.head import RULE, mark
 from zerorev.program.krl.names import label
 from zerorev.program.krl.text import comment, fixed, settled
-from zerorev.program.krl.write import EXT_BAS, PTP_ACCELERATION, refuse_other_makers
+from zerorev.program.krl.write import EXT_BAS, PTP_ACCELERATION
+from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.retract import Retract
 
 __all__ = ["retract_to_krl"]
@@ -41,14 +42,14 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
         NotExportableError: the robot is not a KUKA.
     """
     program, hole = retract.program, retract.hole
-    refuse_other_makers(program.manufacturer, program.robot)
+    refuse_other_makers("krl", program.robot)
     end, deep = fixed(-retract.end * 1e3, 3), fixed(-retract.deepest * 1e3 + DEEPER, 3)
     words = {
         "off": f"{OFF_AXIS:g}", "turned": f"{OFF_DIRECTION:g}", "end": fixed(retract.end * 1e3, 3), "deep": deep
     }  # fmt: skip
     facts = (
         f"Out of hole {hole.number} of {program.listed}: {label(hole.id)}",
-        f"Plan {program.name}, robot {program.manufacturer} {program.model}, tool {program.tool}",
+        f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
         *(f"{finding.level}: {finding.message}" for finding in retract.findings),
     )
     lines = [RULE, *comment(f"Written by zerorev {version}"), *mark(program)]

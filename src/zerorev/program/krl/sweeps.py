@@ -11,7 +11,8 @@ from zerorev.program.krl.controller import AXIS_DECIMALS
 from zerorev.program.krl.head import RULE
 from zerorev.program.krl.names import identifier, label
 from zerorev.program.krl.text import aggregate, clean, comment, fixed
-from zerorev.program.krl.write import PTP_ACCELERATION, PTP_SPEED, refuse_other_makers
+from zerorev.program.krl.write import PTP_ACCELERATION, PTP_SPEED
+from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.sweeps import AMPLITUDE, Sweep, Sweeps
 
 __all__ = ["sweeps_to_krl"]
@@ -41,7 +42,7 @@ def sweeps_to_krl(sweeps: Sweeps, name: str, *, version: str | None = None) -> s
         NotExportableError: the robot is not a KUKA.
     """
     robot = sweeps.drilling.robot
-    refuse_other_makers(robot.manufacturer, robot.name)
+    refuse_other_makers("krl", robot)
     lines = [
         "&ACCESS RVP", "&REL 1", "&COMMENT sweeps of single axes", f"DEF {identifier(name)} ( )",
         "EXT BAS (BAS_COMMAND :IN,REAL :IN )",

@@ -1,4 +1,4 @@
-"""The letters and numbers of KRL: comments, fixed decimals, and KUKA's angles A, B, C."""
+"""The letters and numbers of KRL: comments, fixed decimals, KUKA's angles A, B, C, and how the axes of the tool lie."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ import unicodedata
 
 import numpy as np
 
-from zerorev.model._arrays import Array
+from zerorev.model._arrays import Array, transform
 
 __all__ = [
+    "T_TCP_TOOL",
     "aggregate",
     "axis_angles",
     "comment",
@@ -21,6 +22,14 @@ __all__ = [
     "settled",
     "turn_about_x",
 ]
+
+T_TCP_TOOL = transform(np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]), np.zeros(3))
+"""The tool frame as written, in the tcp frame: X along the plunge (X = -Z_tcp), Y = Y_tcp and so Z = X_tcp.
+
+The hole's axis is then the X direction of every pose of a hole, and the spin is a turn about X alone: of KUKA's angles
+(A, B, C about Z, Y', X'') only C varies along a hole, for any direction of the hole. The tool as the thesis draws it
+does not have this, and passes the singularity of those angles within the range of position 1.
+"""
 
 LINE = 100
 POLE = 1e-9  # below this length across Z an axis points straight up or down, for the angle A, which is then undefined

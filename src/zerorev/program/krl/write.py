@@ -6,12 +6,10 @@ act over a lever of a metre or more and have more; a REAL of the controller hold
 
 from __future__ import annotations
 
-import re
 from importlib.metadata import version as installed_version
 
 import numpy as np
 
-from zerorev.errors import NotExportableError
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
@@ -19,6 +17,7 @@ from zerorev.program.krl.controller import axis_target, called, frames_and_load,
 from zerorev.program.krl.head import head, part_head
 from zerorev.program.krl.names import identifier, label, part_name
 from zerorev.program.krl.text import (
+    T_TCP_TOOL,
     aggregate,
     axis_angles,
     comment,
@@ -27,10 +26,11 @@ from zerorev.program.krl.text import (
     settled,
     turn_about_x,
 )
-from zerorev.program.neutral import HoleProgram, LinearMove, Program, split
+from zerorev.program.neutral import HoleProgram, Move, Program, split
 from zerorev.program.notes import notes, turn_speed
+from zerorev.program.refusals import refuse_other_makers
 
-__all__ = ["krl_modules", "refuse_other_makers", "to_krl"]
+__all__ = ["krl_modules", "to_krl"]
 
 PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves are not checked for collisions
 LEAST_TURN_SPEED = 200.0  # [deg/s]
@@ -74,7 +74,7 @@ def krl_modules(
     """
     called_so, version = identifier(name or program.name), version or installed_version("zerorev")
     parts = {part_name(called_so, n): part for n, part in enumerate(split(program), start=1)}
-    refuse_other_makers(program.manufacturer, program.robot)
+    refuse_other_makers("krl", program.robot)
     refuse_calls(program, [called_so, *parts])
     calls = program.settings.calls
     begin = head(program, notes(program) if findings is None else findings, version)
@@ -106,18 +106,6 @@ def _moves(program: Program) -> list[str]:
         away = [_ptp(joints, program.settings) for joints in program.end]
         lines += [";FOLD Away from the last hole", *away, ";ENDFOLD"]
     return lines
-
-
-def refuse_other_makers(manufacturer: str, robot: str) -> None:
-    """Let only a KUKA pass: a maker that begins with KUKA as a word.
-
-    Raises:
-        NotExportableError: another maker's robot.
-    """
-    if re.match(r"\s*kuka(\s|,|$)", manufacturer, re.IGNORECASE) is None:
-        by = f"by {manufacturer}" if manufacturer.strip() else "of a maker that its file does not name"
-        why = f"the robot {robot} is {by}, and KRL runs on KUKA controllers alone (manufacturer: KUKA in its file)"
-        raise NotExportableError((why,))
 
 
 def _settings(program: Program) -> list[str]:
@@ -180,8 +168,8 @@ def _ptp(joints: Array, settings: Settings) -> str:
     return f"PTP {axis_target(joints, settings)}"
 
 
-def _lin(move: LinearMove, A: float, B: float) -> str:
-    T = move.T_part_tool
+def _lin(move: Move, A: float, B: float) -> str:
+    T = move.end.T_part_tcp @ T_TCP_TOOL
     angles = [degrees(angle) for angle in (A, B, turn_about_x(T[:3, :3], A, B))]
     target = aggregate("", "X Y Z A B C", [*(fixed(x * 1e3) for x in T[:3, 3]), *angles])
     return f"LIN {target}{' C_DIS' if move.blend > 0 else ''} ; {move.comment}"

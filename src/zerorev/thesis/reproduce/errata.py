@@ -255,7 +255,7 @@ def _joints(context: Context, spins_deg: tuple[float, ...]) -> Array:
 
 def _numbers() -> tuple[Result, ...]:
     y = POSITIONS[0].target_mm[1]
-    text, program = (Settings(blend=radius * 1e-3).shortfall * 1e3 for radius in (10.0, 1.0))
+    text, program = (Settings(blend=radius * 1e-3).turning.shortfall * 1e3 for radius in (10.0, 1.0))
     return (
         Result(
             "mean of the optimised motion",

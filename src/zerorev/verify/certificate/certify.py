@@ -66,7 +66,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         hole_plan.hole,
         motion.profile,
         motion.joints,
-        blend=settings.blend,
+        blend=settings.corner_blend,
         passing_blend=settings.passing_blend,
         claims=score,
         limit_margin=settings.limit_margin,

@@ -10,7 +10,7 @@ from flint import arb
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.verify.certificate.arm import Setting, angles, body_at
-from zerorev.verify.certificate.path import Arc
+from zerorev.verify.certificate.path import Arc, JointLeg
 from zerorev.verify.certificate.piece import bounds
 from zerorev.verify.certificate.walk import LostError, Stretch
 from zerorev.verify.claims import JOINT_TOLERANCE
@@ -76,6 +76,29 @@ class Joints:
         self._note(joints, arc.place(1.0))
         if arc.knot is not None and arc.knot < len(self.stated):
             self.refuted += self._off(joints, arc.knot, arc.place(1.0))
+        return joints
+
+    def after(self, leg: JointLeg, before: list[arb]) -> list[arb]:
+        """The joints where a move of all joints ends, on the turns of those with which it begins [rad].
+
+        Args:
+            leg: the move.
+            before: where the motion has come to [rad].
+
+        Raises:
+            LostError: it begins elsewhere, or the turns are undecided.
+        """
+        joints = []
+        for name, began, end, here in zip(self.robot.joint_names, leg.begin, leg.end, before, strict=True):
+            turns = ((here - began) / (2 * arb.pi())).unique_fmpz()
+            if turns is None:
+                raise LostError(f"the turns of the joints could not be decided {leg.place(0.0)}", proven=False)
+            if abs(here - began - 2 * arb.pi() * turns) > JOINT_TOLERANCE:
+                raise LostError(f"{name} is elsewhere where the move begins {leg.place(0.0)}", proven=True)
+            joints.append(end + 2 * arb.pi() * turns)
+        self._note(joints, leg.place(1.0))
+        if leg.knot is not None and leg.knot < len(self.stated):
+            self.refuted += self._off(joints, leg.knot, leg.place(1.0))
         return joints
 
     def limit_distance(self) -> Array:

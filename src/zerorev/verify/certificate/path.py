@@ -15,7 +15,7 @@ from flint import arb, arb_series
 from zerorev.verify.certificate.arm import Pose, Twist
 from zerorev.verify.certificate.vector import Axes, Vector, cross, turned
 
-__all__ = ["Arc", "Blend", "Motion", "Quadratic", "Rig", "Segment", "Turn", "motion_of"]
+__all__ = ["Arc", "Blend", "JointLeg", "Motion", "Quadratic", "Rig", "Segment", "Turn", "motion_of"]
 
 Quadratic = tuple[arb, arb, arb]
 """Coefficients of 1, t and t^2."""
@@ -161,6 +161,33 @@ class Segment(NamedTuple):
         return Arc(self.bend, (x, y, z), self.rig, turns, 2 * cut, standoff)
 
 
+class JointLeg(NamedTuple):
+    """A move of all joints, each evenly, between two points of the motion.
+
+    Where it is blended with a move before or after it, the joints move by a sum of what they do on both, each with a
+    weight that is not negative: a joint that has one direction on both keeps it, regardless of the blend.
+
+    Attributes:
+        where: how a message calls it.
+        begin: the six joints [rad], turns as they fall.
+        end: the same at its end, on the turns of `begin`.
+        length: path that it replaces [m].
+        standoff: at the begin and at the end [m].
+        knot: index of the breakpoint at its end.
+    """
+
+    where: str
+    begin: tuple[arb, ...]
+    end: tuple[arb, ...]
+    length: arb
+    standoff: tuple[arb, arb]
+    knot: int | None = None
+
+    def place(self, t: float) -> str:
+        """Where its begin, t = 0, or its end, t = 1, lies, for a message."""
+        return f"{self.where}, stand-off {round(float(self.standoff[int(t)]) * 1e3, 9) + 0.0:.12g} mm"
+
+
 class Blend(NamedTuple):
     """A bend cut by a parabola.
 
@@ -185,7 +212,7 @@ class Motion(NamedTuple):
         last: how many of `legs` lie before the end of the stroke: after it joints may reverse.
     """
 
-    legs: list[Arc]
+    legs: list[Arc | JointLeg]
     blends: list[Blend]
     first: int
     start: int
@@ -199,8 +226,10 @@ class Motion(NamedTuple):
         return sum(lengths[self.start : self.turn]), sum(lengths[self.turn : self.last])
 
 
-def motion_of(segments: Sequence[Segment], start: int, corner: int, first: int = 0, last: int | None = None) -> Motion:
-    """Straight moves one after the other, and the blends between them.
+def motion_of(
+    segments: Sequence[Segment | JointLeg], start: int, corner: int, first: int = 0, last: int | None = None
+) -> Motion:
+    """Moves one after the other, and the blends between those that are straight.
 
     Args:
         segments: in order of motion.
@@ -209,14 +238,17 @@ def motion_of(segments: Sequence[Segment], start: int, corner: int, first: int =
         first: how many of them lie before the lead-in.
         last: how many of them lie before the end of the stroke; None: all.
     """
-    legs: list[Arc] = []
+    legs: list[Arc | JointLeg] = []
     blends: list[Blend] = []
     counts = {0: 0}  # of legs before each breakpoint
     zero, one = arb(0), arb(1)
     here = zero
     for k, segment in enumerate(segments, start=1):
-        if segment.radius > 0 and k < len(segments):
-            behind = segments[k]
+        behind = segments[k] if k < len(segments) else None
+        if isinstance(segment, JointLeg):
+            legs.append(segment._replace(knot=k))
+            here, counts[k] = zero, len(legs)
+        elif segment.radius > 0 and isinstance(behind, Segment):
             cut = segment.cut(behind)
             entry, leave = one - cut / segment.length, cut / behind.length
             if entry > here:  # else the blend before ends where this one begins

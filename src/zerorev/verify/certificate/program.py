@@ -22,6 +22,7 @@ from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.certificate.proof import nothing, prove
 from zerorev.verify.claims import complete
+from zerorev.verify.printed import joints_of
 
 __all__ = ["certify_program", "certify_program_hole"]
 
@@ -82,12 +83,9 @@ def certify_program_hole(
                     f"{np.rad2deg(there):.6g} deg"
                 )
 
-    first = np.deg2rad([[float(angle) for angle in written.axes_deg]])
+    first = joints_of(plan.robot, written.start)[None]
     with ball_arithmetic():
-        root = plan.settings.robroot
-        path = written_motion(
-            plan.robot.arm, program, written, hole_plan.hole, at, root if isinstance(root, tuple) else None
-        )
+        path = written_motion(plan, program, written, hole_plan.hole, at)
         margin = plan.settings.limit_margin
         proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin)
     return replace(proof, reasons=tuple(_in_file(written, reason) for reason in proof.reasons))

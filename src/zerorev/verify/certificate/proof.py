@@ -14,7 +14,7 @@ from zerorev.model.robot import Robot
 from zerorev.verify.certificate.arm import Setting, posture_of
 from zerorev.verify.certificate.claims import Proven
 from zerorev.verify.certificate.joints import Joints
-from zerorev.verify.certificate.path import Arc, Motion
+from zerorev.verify.certificate.path import Arc, JointLeg, Motion
 from zerorev.verify.certificate.walk import LostError, Slowest, Walk
 
 __all__ = ["nothing", "prove"]
@@ -55,10 +55,15 @@ def prove(
     joints = Joints(robot, setting, stated, margin)
     before, stroke, blended = Slowest(), Slowest(), Slowest()
     try:
-        ends = [joints.begin(motion.legs[0])]
+        ends = [joints.begin(_straight(motion.legs[0]))]
         for k, arc in enumerate(motion.legs):
             on = walk if motion.first <= k < motion.last else aloft
-            ends.append(joints.end(arc, on.along(arc, ends[-1], stroke if motion.start <= k < motion.last else before)))
+            slowest = stroke if motion.start <= k < motion.last else before
+            if isinstance(arc, JointLeg):
+                on.evenly(arc, slowest)
+                ends.append(joints.after(arc, ends[-1]))
+            else:
+                ends.append(joints.end(arc, on.along(arc, ends[-1], slowest)))
         for arc, first in motion.blends:
             cut = joints.end(arc, walk.along(arc, ends[first], blended))
             _same_turns(walk, arc, cut, ends[first + 2])
@@ -88,6 +93,17 @@ def nothing(verdict: Literal["refuted", "undecided"], reasons: tuple[str, ...]) 
     """A certificate of nothing, and why."""
     nan = np.full(6, np.nan)
     return Certificate(verdict, 0, nan, nan, nan, reasons)
+
+
+def _straight(leg: Arc | JointLeg) -> Arc:
+    """The first move of a motion.
+
+    Raises:
+        LostError: it is one of all joints.
+    """
+    if isinstance(leg, JointLeg):
+        raise LostError("the first move of the motion is not straight", proven=True)
+    return leg
 
 
 def _same_turns(walk: Walk, arc: Arc, blended: list[arb], leg: list[arb]) -> None:

@@ -17,7 +17,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.plan import Within
 from zerorev.model.robot import Robot
 from zerorev.verify.certificate.arm import Setting, angles, body_at, rates
-from zerorev.verify.certificate.path import Motion
+from zerorev.verify.certificate.path import Arc, Motion
 from zerorev.verify.certificate.placed import Pieces, placed
 from zerorev.verify.certificate.range import least, lowest_at
 from zerorev.verify.certificate.taylor import Taylor
@@ -83,7 +83,8 @@ class Tolerated:
             T_base_part: part frame, shape (4, 4), translation [m].
         """
         self.robot, self.setting, self.T_base_part = robot, setting, T_base_part
-        self.arcs = [*motion.legs, *(blend.arc for blend in motion.blends)]
+        self.arcs = [leg for leg in motion.legs if isinstance(leg, Arc)]  # of a plan all are
+        self.arcs += [blend.arc for blend in motion.blends]
         self._joints, self._direction = ends, np.sign(ends[1] - ends[0])
         self._ends = Pieces(np.array([0, len(motion.legs) - 1]), np.array([0.0, 1.0]), np.array([0.0, 1.0]))
         counts = [_power_of_two(arc.turn() / TURN_A_PIECE, float(arc.length) / PATH_A_PIECE) for arc in self.arcs]

@@ -15,8 +15,8 @@ from flint import arb
 
 from zerorev.model._arrays import Array
 from zerorev.verify.certificate.arm import Setting, body_at
-from zerorev.verify.certificate.path import Arc
-from zerorev.verify.certificate.piece import Piece, bounds, enclose
+from zerorev.verify.certificate.path import Arc, JointLeg
+from zerorev.verify.certificate.piece import NIL_RATE, Piece, bounds, enclose
 
 __all__ = ["LostError", "Slowest", "Stretch", "Walk"]
 
@@ -118,6 +118,28 @@ class Walk:
         low, high = np.nextafter(low, -np.inf), np.nextafter(high, np.inf)
         low, high = np.where(between, np.inf, low), np.where(between, -np.inf, high)
         return Stretch(joints, low, high)
+
+    def evenly(self, leg: JointLeg, slowest: Slowest) -> None:
+        """Walk along a move of all joints, on which each has one direction.
+
+        Args:
+            leg: where.
+            slowest: of the part of the motion that it is of; brought up to date.
+        """
+        rates = [(end - begin) / leg.length for begin, end in zip(leg.begin, leg.end, strict=True)]
+        below, above = (values[0] for values in bounds([rates]))
+        for joint in sorted(self.followed):
+            name, sign = self.names[joint], int(below[joint] > 0) - int(above[joint] < 0)
+            if below[joint] >= -NIL_RATE and above[joint] <= NIL_RATE:
+                self.paused.setdefault(joint, {}).setdefault(sign, leg.place(0.0))
+            elif not sign:
+                self.undecided.append(f"the direction of {name} could not be decided {leg.place(0.0)}")
+                self.followed.discard(joint)
+            elif self.direction.setdefault(joint, sign) != sign:
+                self.refuted.append(f"{name} turns round: it moves the other way {leg.place(0.0)}")
+                self.followed.discard(joint)
+        slowest.bound = np.minimum(slowest.bound, np.maximum(np.maximum(below, -above), 0.0))
+        slowest.met = np.minimum(slowest.met, np.maximum(np.abs(below), np.abs(above)))
 
     def settle_pauses(self) -> None:
         """A joint may all but stand still throughout; one that moves elsewhere must keep its direction here too."""

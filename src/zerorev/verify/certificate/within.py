@@ -185,7 +185,9 @@ class _Placements:
         assert posture is not None
         self._robot, self._setting, self._T_base_part = robot, Setting(robot.arm, posture), T_base_part
         self._joints = motion.joints[[0, -1]]
-        path = planned_motion(robot.arm, tool, hole_plan.hole, motion.profile, settings.blend, settings.passing_blend)
+        path = planned_motion(
+            robot.arm, tool, hole_plan.hole, motion.profile, settings.corner_blend, settings.passing_blend
+        )
         self._tolerated = Tolerated(robot, self._setting, path, self._joints, T_base_part)
 
     def margin(self, within: Within) -> Margin:

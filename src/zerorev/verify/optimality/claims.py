@@ -34,7 +34,7 @@ class Statement(NamedTuple):
 
 def down_to_the_corner(hole: Hole, settings: Settings) -> Hole:
     """The hole that the legs drill, down to the programmed corner; its depth is that of the legs."""
-    corner = settings.corner
+    corner = settings.corner_standoff
     return replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner, profile=None)
 
 
@@ -107,7 +107,7 @@ class _Rules:
 
     def alike(self, claim: Claim, min_rate: float, depth: float, *, deeper: bool) -> bool:
         """Whether a claim is about the motions that are meant; with `deeper` one about a lesser depth suffices."""
-        legs = depth - self.settings.corner
+        legs = depth - self.settings.corner_standoff
         deep = claim.depth <= legs * (1 + SAME) and (deeper or claim.depth >= legs * (1 - SAME))
         bound = self.settings.psi_bound or 0.0
         weights = claim.weights * self.weights.sum()

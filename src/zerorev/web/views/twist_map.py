@@ -246,7 +246,7 @@ class _TwistMap:
             self.drawn = None
             self.element.run_method("show_map", None)
             return
-        corner = float(self.motion.profile.standoff.min()) if self.motion else state.job.settings.corner
+        corner = float(self.motion.profile.standoff.min()) if self.motion else state.job.settings.corner_standoff
         job = state.job
         thrust, margin = job.settings.thrust, job.settings.limit_margin
         wanted = _Wanted(job.robot, job.tool, state.hole, self.branch, corner, thrust, margin)

@@ -1,0 +1,166 @@
+"""How a motion turns round at its deepest point, and what is known of how each maker's controllers do it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from zerorev.errors import InputError
+
+__all__ = [
+    "CONTROLLERS",
+    "Controller",
+    "ControllerName",
+    "CornerKind",
+    "Turning",
+    "controller_of",
+    "known_controller",
+    "turning_of",
+]
+
+CornerKind = Literal["blend", "joint", "stop"]
+ControllerName = Literal["krl", "rapid", "tp", "urscript", "inform"]
+
+
+@dataclass(frozen=True)
+class Controller:
+    """What is known of the controllers of one maker.
+
+    Attributes:
+        name: of their language, in jobs and on the command line.
+        language: for people.
+        maker: of its robots, for people.
+        makers: the first words of a robot's `manufacturer`, in small letters.
+        usual: how the corner is passed where the job does not say.
+        share: of the shorter move that a blend may take, at most.
+        sized: whether a program says how large a blend is; else the controller's settings and the feed do.
+        refused: ways of passing the corner that are not offered, and why.
+    """
+
+    name: ControllerName
+    language: str
+    maker: str
+    makers: tuple[str, ...]
+    usual: CornerKind
+    share: float = 0.5
+    sized: bool = True
+    refused: Mapping[CornerKind, str] = field(default_factory=dict)
+
+
+CONTROLLERS: Mapping[str, Controller] = {
+    each.name: each
+    for each in (
+        Controller(
+            "krl",
+            "KRL",
+            "KUKA",
+            ("kuka",),
+            "blend",
+            refused={"joint": "the speed of a PTP is a whole percentage, too coarse for the feed of a drill"},
+        ),
+        Controller("rapid", "RAPID", "ABB", ("abb",), "joint"),
+        Controller(
+            "tp",
+            "TP",
+            "FANUC",
+            ("fanuc",),
+            "joint",
+            sized=False,
+            refused={"blend": "how far CNT reaches depends on the feed and on the override, and so would the depth"},
+        ),
+        Controller("urscript", "URScript", "Universal Robots", ("universal robots", "ur"), "joint", share=0.45),
+        Controller(
+            "inform",
+            "INFORM",
+            "Yaskawa",
+            ("yaskawa", "motoman"),
+            "joint",
+            sized=False,
+            refused={"blend": "how far a position level (PL) reaches is not in the program, nor the depth lost to it"},
+        ),
+    )
+}
+assert tuple(CONTROLLERS) == get_args(ControllerName)
+
+UNKNOWN = Controller("krl", "", "", (), "blend")
+
+
+def controller_of(manufacturer: str) -> Controller | None:
+    """The controller of a maker's robots; None where the maker has none that is known.
+
+    Args:
+        manufacturer: as the robot's file has it; words may follow the maker's name.
+    """
+    for each in CONTROLLERS.values():
+        for maker in each.makers:
+            if re.match(rf"\s*{maker}(\s|,|$)", manufacturer, re.IGNORECASE):
+                return each
+    return None
+
+
+def known_controller(name: str | None) -> Controller:
+    """A controller by its name; None: one of which nothing is known but what is usual."""
+    return UNKNOWN if name is None else CONTROLLERS[name]
+
+
+@dataclass(frozen=True)
+class Turning:
+    """How a motion turns round at the corner, as a job asks for it.
+
+    Attributes:
+        kind: how.
+        radius: of the blend there [m]; 0: none.
+        reach: how far from the corner joint moves begin and end, at most [m]; 0: there are none.
+        shortfall: how far short of the corner the tip turns back [m].
+        interval: least and greatest shortfall [m].
+        law: by what the shortfall is expected, in words.
+    """
+
+    kind: CornerKind
+    radius: float
+    reach: float
+    shortfall: float
+    interval: tuple[float, float]
+    law: str
+
+
+def turning_of(controller: str | None, corner: CornerKind | None, blend: float, measured: float | None) -> Turning:
+    """How the corner is passed.
+
+    A blend is taken for a parabola, which turns back half its radius short; every symmetric curve whose speed changes
+    steadily lies between that and the corner.
+
+    Args:
+        controller: its name; None: not known.
+        corner: as asked for; None: as usual for the controller.
+        blend: radius, or reach of the joint moves, as asked for [m]; 0 is a stop.
+        measured: depth lost, as measured [m]; None: not measured.
+
+    Raises:
+        InputError: a stop with another kind, or a kind that is not offered for the controller.
+    """
+    known = known_controller(controller)
+    kind = corner or ("stop" if blend == 0 else known.usual)
+    if blend == 0 and kind != "stop":
+        raise InputError(
+            f"a corner of kind {kind} has no room in a blend of 0", where="corner", accepted="stop, or blend_mm above 0"
+        )
+    if kind in known.refused:
+        offered = [each for each in get_args(CornerKind) if each not in known.refused]
+        why = known.refused[kind]
+        raise InputError(
+            f"{kind} is not offered for {known.language}: {why}", where="corner", accepted=" or ".join(offered)
+        )
+    if kind == "stop":
+        return Turning(kind, 0.0, 0.0, 0.0, (0.0, 0.0), "an exact stop")
+    reach = blend if kind == "joint" else 0.0
+    radius = blend if kind == "blend" else known.share * reach
+    if measured is not None:
+        return Turning(kind, radius, reach, measured, (measured, measured), "as measured")
+    if known.sized:
+        law = "r/2, a parabolic blend; the controller's own curve may differ"
+        return Turning(kind, radius, reach, radius / 2, (0.0, radius / 2), law)
+    law = "r/2, a parabolic blend over half of each joint move; how far the controller blends is not in the program"
+    return Turning(kind, radius, reach, radius / 2, (0.0, reach), law)

@@ -1,0 +1,60 @@
+"""How the motion of a hole turns round at its corner, as its program will have it, and what that costs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from zerorev.model.finding import Finding
+from zerorev.model.plan import Corner, HolePlan, Motion
+from zerorev.model.settings import Settings
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.joint_corner import joint_corner
+
+__all__ = ["MOST_TILT", "corner_findings", "corner_of"]
+
+MOST_TILT = float(np.deg2rad(0.01))  # of the tool against the drill axis on joint moves
+
+
+def corner_of(drilling: Drilling, settings: Settings, motion: Motion) -> Corner:
+    """How a motion turns round.
+
+    Joint moves are as long as asked for, or as long as the tolerance lets them be; where none are short enough, the
+    corner is an exact stop.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: controller, corner and blend.
+        motion: of the hole.
+    """
+    turning, profile = settings.turning, motion.profile
+    around = np.abs(np.diff(profile.standoff))[[profile.corner - 1, profile.corner]]
+    reach = off_axis = tilt = 0.0
+    kind, radius, law = turning.kind, min(turning.radius, settings.blend_share * around.min()), turning.law
+    if kind == "joint":
+        moves = joint_corner(drilling, motion, turning.reach, settings.corner_tolerance, MOST_TILT)
+        if moves is None:
+            return Corner(
+                "stop", 0.0, (0.0, 0.0), "an exact stop, for joint moves leave the axis too far", 0.0, 0.0, 0.0
+            )
+        reach, off_axis, tilt = moves.reach, moves.off_axis, moves.tilt
+        radius = settings.blend_share * reach
+    share = radius / turning.radius if turning.radius > 0 else 0.0
+    least, most = turning.interval
+    return Corner(kind, turning.shortfall * share, (least * share, most * share), law, reach, off_axis, tilt)
+
+
+def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
+    """What a user should know of the corner of one hole.
+
+    Args:
+        settings: that ask for it.
+        answer: with its corner.
+    """
+    corner, asked = answer.corner, settings.turning
+    if corner is None or corner.kind == asked.kind:
+        return ()
+    message = (
+        f"no joint moves at the corner stay within {settings.corner_tolerance * 1e3:g} mm and "
+        f"{np.rad2deg(MOST_TILT):g} deg of the drill axis: all joints rest there (corner_tolerance_mm)"
+    )
+    return (Finding("warning", "corner", message, answer.hole.id),)
