@@ -15,8 +15,9 @@ from zerorev.model.finding import Finding
 from zerorev.program.dialect import ProgramFile
 from zerorev.program.dialects import DIALECTS, read_program
 from zerorev.program.export import export
-from zerorev.program.krl.names import digest, identifier, label, part_name
+from zerorev.program.krl.names import KRL_NAMES, krl_label
 from zerorev.program.krl.write import to_krl
+from zerorev.program.names import digest
 from zerorev.program.neutral import build_program
 
 PARTS = {
@@ -168,9 +169,9 @@ ALIKE = [
 
 def test_no_two_names_become_one():
     """Not to a controller either, nor to Windows: they do not tell capitals from small letters."""
-    made = [identifier(name) for name in ALIKE]
+    made = [KRL_NAMES.of(name) for name in ALIKE]
     assert len({name.lower() for name in made}) == len(ALIKE)
-    assert [identifier(name) for name in made] == made
+    assert [KRL_NAMES.of(name) for name in made] == made
     for name in made:
         assert re.fullmatch("[A-Za-z][A-Za-z0-9_]{0,23}", name)
 
@@ -185,17 +186,17 @@ def test_no_two_names_become_one():
 )
 def test_words_that_a_controller_or_windows_keeps_for_itself(words):
     for name in (*words.split(), *words.lower().split(), *words.title().split()):
-        assert identifier(name).startswith(f"drill_{name}_")
+        assert KRL_NAMES.of(name).startswith(f"drill_{name}_")
 
 
 @pytest.mark.parametrize("number", [1, 9, 10, 999])
 def test_the_parts_of_a_program_are_called_as_the_program(number):
     for name in ("panel", "x" * 22, "x" * 24):
-        called = part_name(name, number)
+        called = KRL_NAMES.part(name, number)
         assert len(called) <= 24
         assert called.endswith(f"_{number}")
-    assert part_name("panel", 12) == "panel_12"
-    assert part_name("x" * 23 + "y", number) != part_name("x" * 24, number)
+    assert KRL_NAMES.part("panel", 12) == "panel_12"
+    assert KRL_NAMES.part("x" * 23 + "y", number) != KRL_NAMES.part("x" * 24, number)
 
 
 def test_a_given_name(published, plan_of, krl):
@@ -239,12 +240,12 @@ ALIKE_IDS = [
 
 
 def test_no_two_ids_become_one_in_a_comment():
-    made = [label(hole_id) for hole_id in ALIKE_IDS]
+    made = [krl_label(hole_id) for hole_id in ALIKE_IDS]
     assert len(set(made)) == len(ALIKE_IDS)
     for called in made:
         assert re.fullmatch("[ -~]{1,60}", called)
-    assert label(FAR) == "WING-LH/UPPER-SKIN/RIB-...-03/FASTENER-POSITION-0001 ~" + digest(FAR)
-    assert label("R0C3") == "R0C3"
+    assert krl_label(FAR) == "WING-LH/UPPER-SKIN/RIB-...-03/FASTENER-POSITION-0001 ~" + digest(FAR)
+    assert krl_label("R0C3") == "R0C3"
 
 
 def test_holes_are_called_the_same_wherever_the_program_names_them(published, plan_of, krl, spoil):
@@ -255,12 +256,12 @@ def test_holes_are_called_the_same_wherever_the_program_names_them(published, pl
     exported = export(plan_of(*holes), skip_failed=True)
     program = krl.read(exported.text)
     assert [fold for fold in program.folds if fold.startswith("Hole")] == [
-        f"Hole 2 of 4: {label(ids[1])}", f"Hole 4 of 4: {label(ids[3])}"
+        f"Hole 2 of 4: {krl_label(ids[1])}", f"Hole 4 of 4: {krl_label(ids[3])}"
     ]  # fmt: skip
     head = " ".join(" ".join(program.comments).split())
-    assert f"left out: holes {label(ids[0])}, {label(ids[2])}" in head
+    assert f"left out: holes {krl_label(ids[0])}, {krl_label(ids[2])}" in head
     for left_out in (ids[0], ids[2]):
-        assert f"hole {label(left_out)}: left out of the program: it was not verified" in head
+        assert f"hole {krl_label(left_out)}: left out of the program: it was not verified" in head
 
 
 def long_ids(tmp_path, plan_of, published, spoil):
@@ -276,7 +277,7 @@ def test_the_hole_that_is_left_out_is_known_from_the_one_that_is_drilled(tmp_pat
     plan, program = long_ids(tmp_path, plan_of, published, spoil), tmp_path / "long.src"
     assert main(["export", str(plan), "--skip-failed", "-o", str(program)]) == 0
     text = program.read_text()
-    assert f";FOLD Hole 2 of 2: {label(FAR[:-1] + '2')}" in text
+    assert f";FOLD Hole 2 of 2: {krl_label(FAR[:-1] + '2')}" in text
     capsys.readouterr()
     main(["check", str(plan), "--certify", "--program", str(program), "--json"])
     proofs = json.loads(capsys.readouterr().out)["holes"]

@@ -110,7 +110,7 @@ def identify(
 
 def _write(meant: PlannedHole, target: Path) -> int:
     from zerorev.files.output import write_text
-    from zerorev.program.krl.names import identifier
+    from zerorev.program.krl.names import KRL_NAMES
     from zerorev.program.krl.sweeps import sweeps_to_krl
     from zerorev.program.sweeps import sweeps_of
 
@@ -118,8 +118,8 @@ def _write(meant: PlannedHole, target: Path) -> int:
     write_text(target, sweeps_to_krl(found, target.stem))
     lasting = sum(each.cycles for each in found.sweeps)
     terminal.say(f"program of {len(found.sweeps)} sweeps written to {target}: {lasting} times there and back")
-    if identifier(target.stem) != target.stem:
-        terminal.note(f"the controller wants this file called {identifier(target.stem)}.src")
+    if KRL_NAMES.of(target.stem) != target.stem:
+        terminal.note(f"the controller wants this file called {KRL_NAMES.of(target.stem)}.src")
     return FINE
 
 

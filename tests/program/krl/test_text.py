@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from zerorev.program.krl.text import aggregate, comment, degrees, fixed, frame_angles, settled
+from zerorev.program.krl.text import KRL_COMMENTS, aggregate, degrees, frame_angles
+from zerorev.program.letters import fixed, settled
 
 
 @pytest.mark.parametrize(
@@ -54,9 +55,9 @@ def test_an_aggregate():
 
 
 def test_a_long_comment_is_wrapped_and_indented():
-    lines = comment("word " * 60, first="info: ")
+    lines = KRL_COMMENTS.lines("word " * 60, first="info: ")
     assert len(lines) > 1
     assert lines[0].startswith("; info: word")
     assert all(line.startswith(";       word") for line in lines[1:])
     assert max(map(len, lines)) <= 100
-    assert comment("") == [";"]
+    assert KRL_COMMENTS.lines("") == [";"]

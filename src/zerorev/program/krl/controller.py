@@ -12,7 +12,8 @@ from zerorev.model.controller import Call, Calls
 from zerorev.model.dynamics import Load
 from zerorev.model.job import Settings
 from zerorev.program.krl.names import KEPT
-from zerorev.program.krl.text import T_TCP_TOOL, aggregate, degrees, fixed, frame_angles
+from zerorev.program.krl.text import T_TCP_TOOL, aggregate, degrees, frame_angles
+from zerorev.program.letters import fixed
 from zerorev.program.neutral import Program
 
 __all__ = [

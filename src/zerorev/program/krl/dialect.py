@@ -9,7 +9,7 @@ from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.modules import parts_called, read_modules
-from zerorev.program.krl.names import identifier
+from zerorev.program.krl.names import KRL_NAMES
 from zerorev.program.krl.retract import retract_to_krl
 from zerorev.program.krl.source import alike
 from zerorev.program.krl.write import krl_modules
@@ -38,4 +38,4 @@ def _retract(retract: Retract, name: str, version: str) -> ProgramFile:
     return ProgramFile(name + SUFFIX, retract_to_krl(retract, name, version))
 
 
-KRL = Dialect(CONTROLLERS["krl"], SUFFIX, alike, identifier, _write, _read, _parts, _retract)
+KRL = Dialect(CONTROLLERS["krl"], SUFFIX, alike, KRL_NAMES.of, _write, _read, _parts, _retract)

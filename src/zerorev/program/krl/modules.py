@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from zerorev.errors import InputError
 from zerorev.model.written import Statement, WrittenProgram
-from zerorev.program.krl.names import part_name
+from zerorev.program.krl.names import KRL_NAMES
 from zerorev.program.krl.read import read_krl, read_starter
 
 __all__ = ["parts_called", "read_modules"]
@@ -64,7 +64,7 @@ def parts_called(text: str, file: str = "program") -> tuple[str, ...]:
         return ()
     name, calls = starter
     for call in calls:
-        if call.words == ((expected := part_name(name, len(found) + 1)).upper(), "(", ")"):
+        if call.words == ((expected := KRL_NAMES.part(name, len(found) + 1)).upper(), "(", ")"):
             found.append(expected)
     return tuple(found)
 

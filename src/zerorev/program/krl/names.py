@@ -1,24 +1,11 @@
-"""Names of programs and of holes in KRL: made of any text, and no two texts get the same one.
-
-A name that can stand as it is stays as it is. Where something is cut, replaced or put before it, a short digest of the
-whole text follows. KRL and Windows do not tell capitals from small letters: two texts that differ in nothing else get
-names that do so, too.
-"""
+"""Names in KRL: what is a word of the language, and what is taken on a controller."""
 
 from __future__ import annotations
 
-import base64
-import hashlib
-import re
+from zerorev.program.krl.text import KRL_COMMENTS
+from zerorev.program.names import WINDOWS, Names, label
 
-from zerorev.program.krl.text import clean, in_ascii
-
-__all__ = ["KEPT", "LONGEST_ID", "RESERVED", "digest", "identifier", "label", "part_name"]
-
-LONGEST_NAME = 24  # KSS 8: names have at most 24 characters
-LONGEST_ID = 60  # characters of a hole's id in a comment
-DIGEST = 6  # characters, of 32 letters and digits: two of a thousand texts share one in one case of two thousand
-PREFIX = "drill_"
+__all__ = ["KEPT", "KRL_NAMES", "RESERVED", "krl_label"]
 
 _LANGUAGE = """
 AND ANIN ANOUT ASYCANCEL ASYCONT ASYPTP ASYSTOP AXIS BOOL BRAKE BRAKE_F B_AND B_EXOR B_NOT B_OR CA CASE CAST_FROM
@@ -44,59 +31,17 @@ A10 A20 A50 ADAT ARC_MSG BAS BASE_DATA BAS_COMMAND BOSCH CELL COLLMONUSER COR_T1
 IR_STOPM ISR_GRP LDAT LOAD_DATA MACHINE MASREF_MAIN MASREF_USER MSGLIB NEW_SERV P00 P00_COMMAND PDAT PERCEPT ROBCOR SPS
 TM_MAIN TOOL_DATA USERSAVE USERSPOT USER_GLO USER_GRP USER_MSG WEAV_DEF
 """
-_WINDOWS = "AUX CLOCK$ CON CONIN$ CONOUT$ NUL PRN " + " ".join(
-    f"{port}{n}" for port in ("COM", "LPT") for n in range(10)
-)
-
 KEPT = frozenset(f"{_LANGUAGE} {_BUILT_IN}".split())
 """Words of the language and functions that are built in: what no call may be called."""
 
-RESERVED = KEPT | frozenset(f"{_DELIVERED} {_WINDOWS}".split())
+RESERVED = KEPT | frozenset(_DELIVERED.split()) | WINDOWS
 """The same, modules and data that a controller has, and Windows' devices: a program so called would not load, or would
 take the place of what is called so."""
 
-_NAME = re.compile(rf"[A-Za-z][A-Za-z0-9_]{{0,{LONGEST_NAME - 1}}}")
+KRL_NAMES = Names(24, RESERVED)
+"""KSS 8: names have at most 24 characters."""
 
 
-def identifier(name: str) -> str:
-    """A name of a program made of any text: letters, digits and `_`, a letter first, at most 24 characters.
-
-    Args:
-        name: kept as it is where it is such a name, and not reserved; else a digest of it is at the end.
-    """
-    if _NAME.fullmatch(name) and name.upper() not in RESERVED:
-        return name
-    kept = re.sub(r"[^A-Za-z0-9_]+", "_", in_ascii(name)).strip("_")
-    if not kept or not kept[0].isalpha() or kept.upper() in RESERVED:
-        kept = f"{PREFIX}{kept}"
-    return f"{kept[: LONGEST_NAME - DIGEST - 1].rstrip('_')}_{digest(name)}"
-
-
-def part_name(name: str, number: int) -> str:
-    """What the part of a program is called, which the program calls: `NAME_1` and so on.
-
-    Args:
-        name: of the program, an `identifier`.
-        number: of the part, from 1.
-    """
-    end = f"_{number}"
-    if len(name) + len(end) <= LONGEST_NAME:
-        return name + end
-    return f"{name[: LONGEST_NAME - len(end) - DIGEST - 1].rstrip('_')}_{digest(name)}{end}"
-
-
-def label(hole_id: str) -> str:
-    """What a comment calls a hole: its id, or where that has to be cut or replaced its two ends and a digest."""
-    plain = clean(hole_id)
-    if plain == hole_id and len(plain) <= LONGEST_ID:
-        return plain
-    rest = LONGEST_ID - DIGEST - 2
-    if len(plain) > rest:  # ids from CAD differ at the end
-        plain = f"{plain[: rest // 2 - 3].rstrip()}...{plain[-(rest // 2) :].lstrip()}"
-    return f"{plain} ~{digest(hole_id)}"
-
-
-def digest(text: str) -> str:
-    """Six small letters and digits that differ where the texts do."""
-    code = hashlib.sha256(text.encode("utf-8", "surrogatepass")).digest()
-    return base64.b32encode(code).decode().lower()[:DIGEST]
+def krl_label(hole_id: str) -> str:
+    """What a comment calls a hole."""
+    return label(hole_id, KRL_COMMENTS)

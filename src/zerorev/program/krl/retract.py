@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from zerorev.program.head import mark
 from zerorev.program.krl.controller import AT_REST, base, header, tool_and_load
-from zerorev.program.krl.head import RULE, mark
-from zerorev.program.krl.names import label
-from zerorev.program.krl.text import comment, fixed, settled
+from zerorev.program.krl.names import krl_label
+from zerorev.program.krl.text import KRL_COMMENTS
 from zerorev.program.krl.write import EXT_BAS, PTP_ACCELERATION
+from zerorev.program.letters import fixed, settled
 from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.retract import Retract
 
@@ -48,16 +49,16 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
         "off": f"{OFF_AXIS:g}", "turned": f"{OFF_DIRECTION:g}", "end": fixed(retract.end * 1e3, 3), "deep": deep
     }  # fmt: skip
     facts = (
-        f"Out of hole {hole.number} of {program.listed}: {label(hole.id)}",
+        f"Out of hole {hole.number} of {program.listed}: {krl_label(hole.id)}",
         f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
         *(f"{finding.level}: {finding.message}" for finding in retract.findings),
     )
-    lines = [RULE, *comment(f"Written by zerorev {version}"), *mark(program)]
+    lines = [KRL_COMMENTS.rule, *KRL_COMMENTS.lines(f"Written by zerorev {version}"), *mark(program, KRL_COMMENTS)]
     for text in facts:
-        lines += comment(text)
+        lines += KRL_COMMENTS.lines(text)
     lines.append(";")
     for text in SENTENCES:
-        lines += comment(text.format(**words), first="- ")
+        lines += KRL_COMMENTS.lines(text.format(**words), first="- ")
     off = [
         f"(HERE.{first}*HERE.{first}+HERE.{second}*HERE.{second} > {fixed(most**2)})"
         for first, second, most in (("Y", "Z", OFF_AXIS), ("A", "B", OFF_DIRECTION))
@@ -70,7 +71,7 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
             EXT_BAS,
             "DECL FRAME HERE,BACK,GOAL",
             *lines,
-            RULE,
+            KRL_COMMENTS.rule,
             ";FOLD INI",
             "BAS (#INITMOV,0 )",
             f"BAS (#VEL_PTP,{PTP_SPEED} )",

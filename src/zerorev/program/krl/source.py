@@ -1,9 +1,4 @@
-"""KRL source as a controller reads it: which characters end a line, begin a comment and separate words.
-
-Where it is not certain how a controller takes a character, the character is refused, in comments too: what zerorev
-takes for a comment must not be a statement to the controller. So a line ends with a line feed, or with a carriage
-return and a line feed, and with nothing else; the only other control character is the tab; all text is ASCII.
-"""
+"""KRL source as a controller reads it: where a comment begins, and what separates words."""
 
 from __future__ import annotations
 
@@ -14,15 +9,12 @@ from functools import partial
 from typing import NoReturn
 
 from zerorev.model.written import Statement, Word
+from zerorev.program.source import Refuse, ascii_lines, rounds_alike
 
-__all__ = ["Refuse", "alike", "shape", "statements", "words"]
-
-Refuse = Callable[[int, str], NoReturn]
-"""Called with the number of a line and what is wrong there."""
+__all__ = ["alike", "shape", "statements", "words"]
 
 LONGEST_STATEMENT = 255  # characters: twice what `export` writes
 
-_ODD = re.compile(r"[^\t -~]")
 _ANGLES = ("A", "B", "C")
 _SIGNS = "{}(),:="
 _WORD = re.compile(rf'"[^"]*"|[{_SIGNS}]|[^ \t"{_SIGNS}]+|"')
@@ -41,9 +33,7 @@ def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
         refuse: called where a controller may read something else than this does.
     """
     begun = False
-    for number, line in enumerate(text.replace("\r\n", "\n").split("\n"), start=1):
-        if odd := _ODD.search(line):
-            refuse(number, _named(odd[0]))
+    for number, line in ascii_lines(text, refuse):
         if not begun and line.startswith("&"):
             continue
         printed = line.partition(";")[0].rstrip()
@@ -79,13 +69,6 @@ def shape(words: tuple[Word, ...]) -> tuple[str, ...]:
     return tuple("0" if isinstance(word, Decimal) else word for word in words)
 
 
-def _named(character: str) -> str:
-    if character == "\r":
-        return "a carriage return without a line feed: it is not certain that it ends a line"
-    kind = "that is not ASCII" if ord(character) > 0x7F else "of control"
-    return f"a character {kind} (code {ord(character):#04x}): it is not certain how a controller reads it"
-
-
 def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
     """Whether a statement is the one expected: points and frames but for one in their last printed digits.
 
@@ -103,16 +86,7 @@ def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
             rounded
             and isinstance(own, Decimal)
             and isinstance(other, Decimal)
-            and _rounds_alike(own, other, turns=name in _ANGLES)
+            and rounds_alike(own, other, turns=name in _ANGLES)
         )
         for own, other, name in zip(found, wanted, names, strict=False)
     )
-
-
-def _rounds_alike(found: Decimal, wanted: Decimal, *, turns: bool) -> bool:
-    """Whether a number is the one expected but for one in its last printed digit.
-
-    Angles are written within (-180, 180], so that the one next to 180 is close to -180.
-    """
-    unit, off = Decimal(1).scaleb(int(wanted.as_tuple().exponent)), abs(found - wanted)
-    return off <= unit or (turns and abs(off - 360) <= unit and min(found, wanted) > -180 and max(found, wanted) <= 180)

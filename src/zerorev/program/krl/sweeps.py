@@ -8,10 +8,10 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.program.krl.controller import AXIS_DECIMALS
-from zerorev.program.krl.head import RULE
-from zerorev.program.krl.names import identifier, label
-from zerorev.program.krl.text import aggregate, clean, comment, fixed
+from zerorev.program.krl.names import KRL_NAMES, krl_label
+from zerorev.program.krl.text import KRL_COMMENTS, aggregate
 from zerorev.program.krl.write import PTP_ACCELERATION, PTP_SPEED
+from zerorev.program.letters import fixed
 from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.sweeps import AMPLITUDE, Sweep, Sweeps
 
@@ -44,7 +44,7 @@ def sweeps_to_krl(sweeps: Sweeps, name: str, *, version: str | None = None) -> s
     robot = sweeps.drilling.robot
     refuse_other_makers("krl", robot)
     lines = [
-        "&ACCESS RVP", "&REL 1", "&COMMENT sweeps of single axes", f"DEF {identifier(name)} ( )",
+        "&ACCESS RVP", "&REL 1", "&COMMENT sweeps of single axes", f"DEF {KRL_NAMES.of(name)} ( )",
         "EXT BAS (BAS_COMMAND :IN,REAL :IN )",
         *_head(sweeps, version or installed_version("zerorev")),
         ";FOLD INI", "BAS (#INITMOV,0 )", f"BAS (#VEL_PTP,{PTP_SPEED} )", f"BAS (#ACC_PTP,{PTP_ACCELERATION} )",
@@ -68,22 +68,22 @@ def _head(sweeps: Sweeps, version: str) -> list[str]:
     facts = (
         ("Robot     ", f"{robot.manufacturer} {robot.model} ({robot.name})"),
         ("Tool      ", sweeps.drilling.tool.name),
-        ("Posture   ", f"where the motion of hole {label(sweeps.drilling.hole.id)} begins"),
+        ("Posture   ", f"where the motion of hole {krl_label(sweeps.drilling.hole.id)} begins"),
         ("Sweeps    ", f"{len(sweeps.sweeps)}, each axis alone, {degrees:.0f} deg to either side"),
         ("Tip       ", f"{tip} [mm], robot base"),
         ("Lasts     ", f"some {lasting / 60 + 1:.0f} minutes"),
     )
-    lines = [RULE, *comment(f"Written by zerorev {version}")]
+    lines = [KRL_COMMENTS.rule, *KRL_COMMENTS.lines(f"Written by zerorev {version}")]
     for first, text in facts:
-        lines += comment(text, first=first)
+        lines += KRL_COMMENTS.lines(text, first=first)
     lines.append(";")
     for text in SAFETY:
-        lines += comment(text, first="- ")
-    return [*lines, RULE]
+        lines += KRL_COMMENTS.lines(text, first="- ")
+    return [*lines, KRL_COMMENTS.rule]
 
 
 def _sweep(sweeps: Sweeps, sweep: Sweep, title: str, lowers: bool) -> list[str]:
-    name = clean(sweeps.drilling.robot.joint_names[sweep.joint])
+    name = KRL_COMMENTS.clean(sweeps.drilling.robot.joint_names[sweep.joint])
     lines = [f";FOLD {title}: {name} at {sweep.speed:.3g} rad/s", REST]
     if lowers:
         lines += [f"IF $OV_PRO>{sweep.override} THEN", f"$OV_PRO={sweep.override}", "ENDIF"]

@@ -1,25 +1,19 @@
-"""The letters and numbers of KRL: comments, fixed decimals, KUKA's angles A, B, C, and how the axes of the tool lie."""
+"""The letters and numbers of KRL: comments, KUKA's angles A, B, C, and how the axes of the tool lie."""
 
 from __future__ import annotations
-
-import re
-import textwrap
-import unicodedata
 
 import numpy as np
 
 from zerorev.model._arrays import Array, transform
+from zerorev.program.letters import Comments, fixed
 
 __all__ = [
+    "KRL_COMMENTS",
     "T_TCP_TOOL",
     "aggregate",
     "axis_angles",
-    "comment",
     "degrees",
-    "fixed",
     "frame_angles",
-    "in_ascii",
-    "settled",
     "turn_about_x",
 ]
 
@@ -31,48 +25,10 @@ The hole's axis is then the X direction of every pose of a hole, and the spin is
 does not have this, and passes the singularity of those angles within the range of position 1.
 """
 
-LINE = 100
 POLE = 1e-9  # below this length across Z an axis points straight up or down, for the angle A, which is then undefined
 
-MEANT_OTHERWISE = str.maketrans({"%": " percent", "{": "(", "}": ")"})
-
-
-def comment(text: str, *, first: str = "", longest: int = 0) -> list[str]:
-    """Comment lines of a text, wrapped; `first` leads the first line and the others are indented by as much.
-
-    KRL source is ASCII, a comment ends with its line, and `;%{...}` hides text from the operator: what cannot stand is
-    replaced.
-    """
-    plain = clean(text)
-    if longest and len(plain) > longest:
-        plain = plain[: longest - 3] + "..."
-    indents = f"; {first}", "; " + " " * len(first)
-    # an id with hyphens stays in one piece
-    return textwrap.wrap(
-        plain, LINE, initial_indent=indents[0], subsequent_indent=indents[1], break_on_hyphens=False
-    ) or [";"]
-
-
-def clean(text: str) -> str:
-    """A text on one line, in printable ASCII, without the characters that mean something in a KRL comment."""
-    one_line = " ".join(in_ascii(text).split())
-    return re.sub(r"[^ -~]", "?", one_line).translate(MEANT_OTHERWISE)
-
-
-def in_ascii(text: str) -> str:
-    """Accents taken off their letters, everything else beyond ASCII made a question mark."""
-    spread = unicodedata.normalize("NFKD", text)
-    return "".join(c for c in spread if not unicodedata.combining(c)).encode("ascii", "replace").decode("ascii")
-
-
-def fixed(value: float, decimals: int = 4) -> str:
-    """A number with fixed decimals, never a negative zero."""
-    return f"{round(float(value), decimals) + 0.0:.{decimals}f}"
-
-
-def settled(value: float, decimals: int = 4) -> str:
-    """A number above 0 as `fixed`, but one just between two decimals always goes down: its last bits do not decide."""
-    return fixed(value - 1e-4 * 10.0**-decimals, decimals)
+KRL_COMMENTS = Comments(";", instead=str.maketrans({"%": " percent", "{": "(", "}": ")"}))
+"""`;%{...}` hides text from the operator."""
 
 
 def degrees(angle: float, decimals: int = 4) -> str:

@@ -13,19 +13,12 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
+from zerorev.program.head import about, head, part_head
 from zerorev.program.krl.controller import axis_target, called, frames_and_load, header, refuse_calls
-from zerorev.program.krl.head import head, part_head
-from zerorev.program.krl.names import identifier, label, part_name
-from zerorev.program.krl.text import (
-    T_TCP_TOOL,
-    aggregate,
-    axis_angles,
-    comment,
-    degrees,
-    fixed,
-    settled,
-    turn_about_x,
-)
+from zerorev.program.krl.head import sentences
+from zerorev.program.krl.names import KRL_NAMES, krl_label
+from zerorev.program.krl.text import KRL_COMMENTS, T_TCP_TOOL, aggregate, axis_angles, degrees, turn_about_x
+from zerorev.program.letters import fixed, settled
 from zerorev.program.neutral import HoleProgram, Move, Program, split
 from zerorev.program.notes import notes, turn_speed
 from zerorev.program.refusals import refuse_other_makers
@@ -36,6 +29,7 @@ PTP_SPEED, PTP_ACCELERATION = 20, 50  # [%] of what the axes can: the PTP moves 
 LEAST_TURN_SPEED = 200.0  # [deg/s]
 TURN_SPEED_RESERVE = 1.2
 SPEED_DECIMALS = 6
+KUKA_AXES = ("A1", "A2", "A3", "A4", "A5", "A6")
 EXT_BAS = "EXT BAS (BAS_COMMAND :IN,REAL :IN )"
 
 
@@ -72,12 +66,13 @@ def krl_modules(
     Raises:
         NotExportableError: the robot is not a KUKA; a call that would be something else.
     """
-    called_so, version = identifier(name or program.name), version or installed_version("zerorev")
-    parts = {part_name(called_so, n): part for n, part in enumerate(split(program), start=1)}
+    called_so, version = KRL_NAMES.of(name or program.name), version or installed_version("zerorev")
+    parts = {KRL_NAMES.part(called_so, n): part for n, part in enumerate(split(program), start=1)}
     refuse_other_makers("krl", program.robot)
     refuse_calls(program, [called_so, *parts])
     calls = program.settings.calls
-    begin = head(program, notes(program) if findings is None else findings, version)
+    known = notes(program) if findings is None else findings
+    begin = head(program, known, version, KRL_COMMENTS, sentences(program))
     if not parts:
         body = [*_settings(program), *called(calls.before_job), *_moves(program), *called(calls.after_job)]
         return {called_so: _module(program, called_so, [EXT_BAS, *begin], body)}
@@ -88,7 +83,9 @@ def krl_modules(
     for number, (called_as, part) in enumerate(parts.items(), start=1):
         title = f"Part {number} of {len(parts)} of {called_so}, which starts it: {len(part.holes)} holes"
         body = [*_settings(program), *_moves(part)]
-        modules[called_as] = _module(program, called_as, [EXT_BAS, *part_head(program, title, version)], body)
+        modules[called_as] = _module(
+            program, called_as, [EXT_BAS, *part_head(program, title, version, KRL_COMMENTS, sentences(program))], body
+        )
     return modules
 
 
@@ -135,7 +132,7 @@ def _hole(hole: HoleProgram, title: str, settings: Settings) -> list[str]:
     material or the fixture; an absolute LIN only runs what is left. Between the linear moves stand nothing but
     assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
     """
-    lines = [f";FOLD {title}: {label(hole.id)}", *_about(hole)]
+    lines = [f";FOLD {title}: {krl_label(hole.id)}", *about(hole, KUKA_AXES, KRL_COMMENTS)]
     lines += [_ptp(joints, settings) for joints in (*hole.way, hole.start.joints)]
     lines += called(settings.calls.before_hole)
     A, B = axis_angles(hole.axis)
@@ -149,19 +146,6 @@ def _hole(hole: HoleProgram, title: str, settings: Settings) -> list[str]:
             lines.append(f"$APO.CDIS={radius}")
         lines.append(_lin(move, A, B))
     return [*lines, *called(settings.calls.after_hole), f";ENDFOLD ({title})"]
-
-
-def _about(hole: HoleProgram) -> list[str]:
-    places = [(hole.start.standoff, hole.start.psi), *((move.standoff, move.psi) for move in hole.moves)]
-    standoff = " ".join(fixed(s * 1e3, 3) for s, _ in places)
-    psi = " ".join(fixed(np.rad2deg(p)) for _, p in places)
-    reversals = " ".join(f"{count:d}" for count in hole.reversals_per_joint)
-    stroke = f"stroke {fixed(hole.depth * 1e3, 3)} mm, lead-in {fixed(hole.lead_in * 1e3, 3)} mm"
-    return [
-        *comment(f"{stroke}, reversals of A1 to A6: {reversals}"),
-        *comment(f"stand-off [mm] {standoff}"),
-        *comment(f"psi [deg] {psi}"),
-    ]
 
 
 def _ptp(joints: Array, settings: Settings) -> str:
