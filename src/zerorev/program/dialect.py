@@ -5,13 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from zerorev.model._arrays import transform
 from zerorev.model.corner import Controller
 from zerorev.model.finding import Finding
 from zerorev.model.written import Word, WrittenProgram
 from zerorev.program.neutral import Program
 from zerorev.program.retract import Retract
 
-__all__ = ["Dialect", "ProgramFile"]
+__all__ = ["Z_ALONG_PLUNGE", "Dialect", "ProgramFile"]
+
+Z_ALONG_PLUNGE = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
+"""The tool frame as most languages have it, in the tcp frame: Z along the plunge (Z = -Z_tcp), X = X_tcp."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,7 @@ class Dialect:
         parts: of the file that is started -> the names of the others, in order.
         retract: (way out of a hole, name, version of zerorev) -> the file of a program; None: not offered.
         examine: what the language asks of a program beyond what all do; an error among the findings stops the export.
+        most_holes: how many holes one file may have, so that the controller takes it; None: any number.
     """
 
     controller: Controller
@@ -53,6 +60,7 @@ class Dialect:
     parts: Callable[[ProgramFile], tuple[str, ...]]
     retract: Callable[[Retract, str, str], ProgramFile] | None = None
     examine: Callable[[Program], tuple[Finding, ...]] = lambda program: ()
+    most_holes: Callable[[Program], int | None] = lambda program: None
 
     @property
     def name(self) -> str:

@@ -136,7 +136,10 @@ def exporting(
     program = replace(
         program,
         findings=(*wanted.findings, *program.findings),
-        parts=_parts(len(program.holes), holes_per_program or plan.settings.holes_per_program),
+        parts=_parts(
+            len(program.holes),
+            holes_per_program or plan.settings.holes_per_program or dialect.most_holes(program),
+        ),
     )
     findings = (*preflight(program, plan), *dialect.examine(program))
     _refuse_errors(findings)
