@@ -21,6 +21,7 @@ FindingKind = Literal[
     "certificate",
     "channels",
     "clearance",
+    "controller",
     "corner",
     "corner_not_deepened",
     "deepest",
