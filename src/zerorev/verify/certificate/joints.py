@@ -95,6 +95,8 @@ class Joints:
                 raise LostError(f"the turns of the joints could not be decided {leg.place(0.0)}", proven=False)
             if abs(here - began - 2 * arb.pi() * turns) > JOINT_TOLERANCE:
                 raise LostError(f"{name} is elsewhere where the move begins {leg.place(0.0)}", proven=True)
+            if leg.printed and turns != 0:
+                raise LostError(f"{name} is sent whole turns away {leg.place(1.0)}", proven=True)
             joints.append(end + 2 * arb.pi() * turns)
         self._note(joints, leg.place(1.0))
         if leg.knot is not None and leg.knot < len(self.stated):

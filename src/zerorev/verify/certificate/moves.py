@@ -14,14 +14,16 @@ from decimal import Decimal
 import numpy as np
 from flint import arb
 
+from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
 from zerorev.model.plan import Plan
 from zerorev.model.robot import Robot
 from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenMove, WrittenProgram
 from zerorev.verify.as_planned import NUMBERED, Places
-from zerorev.verify.certificate.arm import flange_at
+from zerorev.verify.certificate.arm import Pose, Setting, angles, body_at, flange_at, posture_of
 from zerorev.verify.certificate.path import JointLeg, Motion, Rig, Segment, motion_of
 from zerorev.verify.certificate.vector import Axes, Vector, axis_angle, columns, combined, dot, onto, vector
+from zerorev.verify.printed import joints_of
 
 __all__ = ["written_motion"]
 
@@ -38,7 +40,7 @@ def written_motion(plan: Plan, program: WrittenProgram, written: WrittenHole, ho
         hole: as planned; only to tell stand-offs in messages.
         at: where its points lie.
     """
-    points = _Points(plan, program)
+    points = _Points(plan, program, joints_of(plan.robot, written.start))
     ends = [points.pose(end) for end in (written.start, *(move.end for move in written.moves))]
     joints = [_joints(plan.robot, each) for each in (written.start, *(move.end for move in written.moves))]
     standoff = [
@@ -55,18 +57,19 @@ def written_motion(plan: Plan, program: WrittenProgram, written: WrittenHole, ho
             bend = f"in the {corner} (line {move.line})"
             legs.append(points.straight(written.moves, k, (ends[k], ends[k + 1]), where, bend, spans))
         else:
-            begin, end = joints[k], joints[k + 1]
-            if begin is None or end is None:
-                raise ValueError(f"line {move.line}: a joint move between points that are not joints")
-            legs.append(JointLeg(where, begin, end, abs(spans[1] - spans[0]), spans))
+            end = joints[k + 1]
+            if end is None:
+                raise ValueError(f"line {move.line}: a joint move to a point that is not joints")
+            begin = joints[k] or points.joints_at(ends[k], end)
+            legs.append(JointLeg(where, begin, end, abs(spans[1] - spans[0]), spans, printed=True))
     return motion_of(legs, at.lead, at.corner, at.first, at.last)
 
 
 class _Points:
     """The poses of a program's points, seen from the robot's base."""
 
-    def __init__(self, plan: Plan, program: WrittenProgram) -> None:
-        self.robot = plan.robot
+    def __init__(self, plan: Plan, program: WrittenProgram, start: Array) -> None:
+        self.robot, self.start = plan.robot, start
         if program.tool is None:
             T = plan.tool.T_flange_tcp @ NUMBERED
             self.tip_in_flange, tool = vector(T[:3, 3]), columns(T[:3, :3])
@@ -90,6 +93,22 @@ class _Points:
         tip, axes = _frame(end)
         x, y, z = (onto(self.base, onto(axes, axis)) for axis in self.in_tool)
         return combined((self.part, arb(1)), (onto(self.base, tip), arb(1))), (x, y, z)
+
+    def joints_at(self, place: tuple[Vector, Axes], near: Sequence[arb]) -> tuple[arb, ...]:
+        """Joints of the posture of the start at a tip [m] and axes of the flange, on the turns of others [rad].
+
+        NaN where they cannot be computed: what is to be proven of them remains undecided.
+        """
+        (tip, flange), posture = place, posture_of(self.robot.arm, self.start)
+        if posture is None:
+            return (arb("nan"),) * 6
+        setting = Setting(self.robot.arm, posture)
+        wrist = combined((tip, arb(1)), (onto(flange, self.wrist), arb(1)))
+        found = angles(setting, body_at(setting, Pose(wrist, flange[2])), flange)
+        return tuple(
+            angle + 2 * arb.pi() * round(float(other - angle) / (2 * np.pi)) if angle.is_finite() else angle
+            for angle, other in zip(found, near, strict=True)
+        )
 
     def straight(
         self,

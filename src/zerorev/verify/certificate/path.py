@@ -174,6 +174,7 @@ class JointLeg(NamedTuple):
         length: path that it replaces [m].
         standoff: at the begin and at the end [m].
         knot: index of the breakpoint at its end.
+        printed: whether the turns of `end` are those to which the robot is sent.
     """
 
     where: str
@@ -182,6 +183,7 @@ class JointLeg(NamedTuple):
     length: arb
     standoff: tuple[arb, arb]
     knot: int | None = None
+    printed: bool = False
 
     def place(self, t: float) -> str:
         """Where its begin, t = 0, or its end, t = 1, lies, for a message."""
