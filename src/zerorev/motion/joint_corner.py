@@ -2,7 +2,7 @@
 
 Along the drill axis the tip goes straight back at the corner, which not every controller blends. In the joints the two
 moves meet below 90 deg, since no joint changes its direction there. Their ends lie on the motion; between these the tip
-leaves the drill axis a little, and the tool tilts: as the square of their reach.
+leaves the drill axis a little, and the tool tilts: as the square of their reach (theory §5.2).
 """
 
 from __future__ import annotations
