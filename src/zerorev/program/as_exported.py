@@ -61,7 +61,7 @@ def expected(plan: Plan, dialect: Dialect) -> Expected:
         exported = build_program(plan, skip_failed=True)
     except NotExportableError as refusal:  # a move between two holes
         return Expected(plan, dialect, {None: "; ".join(refusal.reasons)}, moving)
-    program = _with_end(plan, _read_again(exported, dialect))
+    program = _with_end(plan, _read_again(exported, dialect), dialect)
     holes = {hole.id: written for hole, written in zip(exported.holes, program.holes, strict=True)}
     return Expected(plan, dialect, refused, moving, program, holes)
 
@@ -70,12 +70,14 @@ def _read_again(program: Program, dialect: Dialect, name: str = "") -> WrittenPr
     return dialect.read(dialect.write(program, dialect.program_name(name or program.name), (), "as read back"))
 
 
-def _with_end(plan: Plan, program: WrittenProgram) -> WrittenProgram:
+def _with_end(plan: Plan, program: WrittenProgram, dialect: Dialect) -> WrittenProgram:
     """The program with what is called after the job in its `tail`: a reader cannot know it from the last hole's."""
-    last = program.holes[-1]
-    count = len(plan.settings.calls.after_job) + 1
+    last, count = program.holes[-1], len(plan.settings.calls.after_job)
+    if count == 0:
+        return program
+    count += dialect.at_rest
     calls = last.statements[-count:]
-    if count == 1 or program.tail or program.parts or calls[0].line <= last.moves[-1].line:
+    if program.tail or program.parts or calls[0].line <= last.moves[-1].line:
         return program
     last = replace(last, statements=last.statements[:-count])
     return replace(program, holes=(*program.holes[:-1], last), tail=calls)
@@ -103,7 +105,7 @@ class Expected:
 
     def beside(self, program: WrittenProgram, file_name: str = "") -> tuple[Drilled, ...]:
         """What a program has for each hole of the plan, as `as_exported`."""
-        program = _with_end(self.plan, program)
+        program = _with_end(self.plan, program, self.dialect)
         drilled = dict(
             zip(self.moving, _paired(program, [self.holes.get(own) for own in self.moving], self.dialect), strict=True)
         )
@@ -149,7 +151,7 @@ class Expected:
             return self.program if kept else None
         wanted = build_program(self.plan, skip_failed=True, only=kept)
         if not program.parts:
-            return _with_end(self.plan, _read_again(wanted, self.dialect))
+            return _with_end(self.plan, _read_again(wanted, self.dialect), self.dialect)
         files = [hole.file for hole_id in kept if (hole := drilled[hole_id])]
         parts = tuple(len(list(same)) for _, same in groupby(files))
         return _read_again(replace(wanted, parts=parts), self.dialect, program.name)

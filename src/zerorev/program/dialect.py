@@ -49,6 +49,7 @@ class Dialect:
         retract: (way out of a hole, name, version of zerorev) -> the file of a program; None: not offered.
         examine: what the language asks of a program beyond what all do; an error among the findings stops the export.
         most_holes: how many holes one file may have, so that the controller takes it; None: any number.
+        at_rest: how many statements stand before those that call programs of the controller.
     """
 
     controller: Controller
@@ -61,6 +62,7 @@ class Dialect:
     retract: Callable[[Retract, str, str], ProgramFile] | None = None
     examine: Callable[[Program], tuple[Finding, ...]] = lambda program: ()
     most_holes: Callable[[Program], int | None] = lambda program: None
+    at_rest: int = 0
 
     @property
     def name(self) -> str:

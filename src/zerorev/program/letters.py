@@ -8,7 +8,9 @@ import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-__all__ = ["Comments", "fixed", "in_ascii", "settled"]
+import numpy as np
+
+__all__ = ["Comments", "degrees", "fixed", "in_ascii", "settled"]
 
 
 @dataclass(frozen=True)
@@ -19,11 +21,13 @@ class Comments:
         sign: what begins one.
         width: characters of a line, at most.
         instead: what is written for characters that mean something in a comment, by their codes.
+        narrow: whether lines are too short for columns.
     """
 
     sign: str
     width: int = 100
     instead: Mapping[int, str] = field(default_factory=dict)
+    narrow: bool = False
 
     @property
     def rule(self) -> str:
@@ -48,7 +52,9 @@ class Comments:
         plain = self.clean(text)
         if longest and len(plain) > longest:
             plain = plain[: longest - 3] + "..."
-        indents = f"{self.sign} {first}", f"{self.sign} " + " " * len(first)
+        if self.narrow and first:
+            first = f"{first.strip()} "
+        indents = f"{self.sign} {first}", f"{self.sign} " + " " * (min(len(first), 1) if self.narrow else len(first))
         # an id with hyphens stays in one piece
         return textwrap.wrap(
             plain, self.width, initial_indent=indents[0], subsequent_indent=indents[1], break_on_hyphens=False
@@ -64,6 +70,12 @@ def in_ascii(text: str) -> str:
 def fixed(value: float, decimals: int = 4) -> str:
     """A number with fixed decimals, never a negative zero."""
     return f"{round(float(value), decimals) + 0.0:.{decimals}f}"
+
+
+def degrees(angle: float, decimals: int = 4) -> str:
+    """An angle [rad] in degrees, wrapped to (-180, 180] after it is rounded, so that -180 is not written."""
+    rounded = round(float(np.rad2deg(angle)), decimals)
+    return fixed(rounded - 360.0 * np.ceil((rounded - 180.0) / 360.0), decimals)
 
 
 def settled(value: float, decimals: int = 4) -> str:

@@ -72,8 +72,10 @@ class Names:
         end = f"_{number}"
         if len(name) + len(end) <= self.longest:
             return name + end
-        own = digest(name).upper() if self.capitals else digest(name)
-        return f"{name[: self.longest - len(end) - DIGEST - 1].rstrip('_')}_{own}{end}"
+        own, room = digest(name).upper() if self.capitals else digest(name), self.longest - len(end)
+        if room <= DIGEST + 1:  # for a letter and as much of the digest as there is room
+            return f"{name[0]}{own[: room - 1]}{end}"
+        return f"{name[: room - DIGEST - 1].rstrip('_')}_{own}{end}"
 
 
 def label(hole_id: str, comments: Comments) -> str:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from zerorev.program.krl.text import KRL_COMMENTS, aggregate, degrees, frame_angles
-from zerorev.program.letters import fixed, settled
+from zerorev.program.krl.text import KRL_COMMENTS, aggregate, frame_angles
+from zerorev.program.letters import degrees, fixed, settled
 
 
 @pytest.mark.parametrize(

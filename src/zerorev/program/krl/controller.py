@@ -12,8 +12,8 @@ from zerorev.model.controller import Call, Calls
 from zerorev.model.dynamics import Load
 from zerorev.model.job import Settings
 from zerorev.program.krl.names import KEPT
-from zerorev.program.krl.text import T_TCP_TOOL, aggregate, degrees, frame_angles
-from zerorev.program.letters import fixed
+from zerorev.program.krl.text import T_TCP_TOOL, aggregate, frame_angles
+from zerorev.program.letters import degrees, fixed
 from zerorev.program.neutral import Program
 
 __all__ = [

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.model._arrays import Array, transform
-from zerorev.program.letters import Comments, fixed
+from zerorev.program.letters import Comments
 
 __all__ = [
     "KRL_COMMENTS",
     "T_TCP_TOOL",
     "aggregate",
     "axis_angles",
-    "degrees",
     "frame_angles",
     "turn_about_x",
 ]
@@ -29,12 +28,6 @@ POLE = 1e-9  # below this length across Z an axis points straight up or down, fo
 
 KRL_COMMENTS = Comments(";", instead=str.maketrans({"%": " percent", "{": "(", "}": ")"}))
 """`;%{...}` hides text from the operator."""
-
-
-def degrees(angle: float, decimals: int = 4) -> str:
-    """An angle [rad] in degrees, wrapped to (-180, 180] after it is rounded, so that -180 is not written."""
-    rounded = round(float(np.rad2deg(angle)), decimals)
-    return fixed(rounded - 360.0 * np.ceil((rounded - 180.0) / 360.0), decimals)
 
 
 def aggregate(kind: str, names: str, values: list[str]) -> str:

@@ -17,8 +17,8 @@ from zerorev.program.head import about, head, part_head
 from zerorev.program.krl.controller import axis_target, called, frames_and_load, header, refuse_calls
 from zerorev.program.krl.head import sentences
 from zerorev.program.krl.names import KRL_NAMES, krl_label
-from zerorev.program.krl.text import KRL_COMMENTS, T_TCP_TOOL, aggregate, axis_angles, degrees, turn_about_x
-from zerorev.program.letters import fixed, settled
+from zerorev.program.krl.text import KRL_COMMENTS, T_TCP_TOOL, aggregate, axis_angles, turn_about_x
+from zerorev.program.letters import degrees, fixed, settled
 from zerorev.program.neutral import HoleProgram, Move, Program, split
 from zerorev.program.notes import notes, turn_speed
 from zerorev.program.refusals import refuse_other_makers
