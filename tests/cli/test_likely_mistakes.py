@@ -205,7 +205,7 @@ def test_any_angles_of_a_hole(tmp_path):
 
 def test_pecking_is_not_planned_and_said_so(capsys):
     said = refused(capsys, "plan", PRACTICE / "c19_peck/peck.yaml")
-    assert "pecking, in and out of a hole in steps, is not planned" in said
+    assert "pecking, in and out of a hole in steps, is not planned as one motion" in said
 
 
 def test_frames_as_kuka_has_them(capsys, tmp_path):

@@ -14,12 +14,13 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.robot_schema import DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
-from zerorev.files.schema import HoleForm, SettingsForm
+from zerorev.files.schema import CycleForm, HoleForm, SettingsForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform, unit
 from zerorev.model.controller import Call, Calls, ExternalAxis
+from zerorev.model.cycle import MOST_BACK, Cycle
 from zerorev.model.dynamics import Dynamics, Link, Load
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.profile import Profile
@@ -29,6 +30,7 @@ from zerorev.model.stated import stated
 from zerorev.model.tool import Tool
 
 __all__ = [
+    "cycle_from",
     "frame_data",
     "frame_from",
     "given_profile",
@@ -160,7 +162,17 @@ def settings_from(form: SettingsForm, *, before: bool = False) -> Settings:
         external_axes=tuple(ExternalAxis(axis.name, axis.at) for axis in form.external_axes),
         calls=calls,
         header=tuple(form.header),
+        cycle=cycle_from(form.cycle),
     )
+
+
+def cycle_from(form: CycleForm) -> Cycle:
+    """How a hole is drilled.
+
+    Raises:
+        InputError: what does not fit together.
+    """
+    return noun_from(Cycle, form)
 
 
 def _calls_from(place: str, texts: list[str]) -> tuple[Call, ...]:
@@ -182,6 +194,7 @@ def settings_data(settings: Settings) -> dict[str, Any]:
         "external_axes": [{"name": axis.name, "at": plain(axis.at)} for axis in settings.external_axes],
         "calls": {each.name: [str(call) for call in getattr(calls, each.name)] for each in fields(calls)},
         "header": list(settings.header),
+        "cycle": data_of(settings.cycle),
     }
 
 
@@ -211,6 +224,7 @@ def hole_from(form: HoleForm, reference: str | list[float], tool: Tool, T_base_p
         profile=profile,
         branch=form.branch,
         group=form.group or "",
+        cycle=None if form.cycle is None else cycle_from(form.cycle),
     )
 
 
@@ -234,4 +248,13 @@ def given_profile(standoff_mm: list[float] | None, psi_deg: list[float] | None, 
         raise InputError(
             f"has {len(psi_deg)} spins for {len(standoff_mm)} stand-offs", where="psi_deg", accepted="as many as these"
         )
-    return Profile(m(standoff_mm), rad(psi_deg))
+    profile = Profile(m(standoff_mm), rad(psi_deg))
+    backs = np.diff(profile.standoff[: profile.corner + 1])
+    if backs.max() > MOST_BACK:
+        raise InputError(
+            "the stand-off does not fall to the target and rise again",
+            where="standoff_mm",
+            accepted=f"falling values, drawn back on the way by {MOST_BACK * 1e3:g} mm at most to break chips, the "
+            "target, then rising values; pecking, in and out of a hole in steps, is not planned as one motion",
+        )
+    return profile

@@ -9,6 +9,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.conversion import (
+    cycle_from,
     frame_from,
     given_profile,
     robot_data,
@@ -177,6 +178,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             profile=given_profile(given.standoff_mm, given.psi_deg, form.depth_mm),
             branch=given.branch,
             group=form.group or "",
+            cycle=None if form.cycle is None else cycle_from(form.cycle),
         )
         return noun_from(
             HolePlan,

@@ -76,6 +76,7 @@ def asked_data(hole: Hole) -> dict[str, Any]:
         "depth_mm": mm(hole.depth),
         "psi_zero": hole.psi_zero,
         "given": _given_data(hole),
+        "cycle": None if hole.cycle is None else data_of(hole.cycle),
     }
 
 

@@ -89,6 +89,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "depth_mm": Field("input"),
     "psi_zero": Field("input"),
     "given": Field("input"),
+    "cycle": Field("input"),
     "deepest_mm": Field("search", DEEPEST, 1e-9, optional=True),
     "deepest_at_most_mm": Field("search", BOUND, 1e-9, optional=True),
     "status": Field("search"),

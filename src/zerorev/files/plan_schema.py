@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from zerorev.files.robot_schema import FrameForm, RobotForm, ToolForm
-from zerorev.files.schema import SettingsForm
+from zerorev.files.schema import CycleForm, SettingsForm
 from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
 from zerorev.files.values import (
     MOST_BREAKPOINTS,
@@ -177,6 +177,9 @@ class PlanHole(Form):
     given: GivenForm | None = Field(
         default=None,
         description="a mapping of standoff_mm, psi_deg and branch as the job fixed them; or null: it fixed none",
+    )
+    cycle: CycleForm | None = Field(
+        default=None, description="a mapping of kind, depth_mm and back_mm: how it is drilled; or null: as the job says"
     )
     status: Literal["planned", "evaluated", "infeasible"] = Field(
         description="planned (searched for), evaluated (given, not searched for) or infeasible (no motion at all)"

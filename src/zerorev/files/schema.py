@@ -27,6 +27,7 @@ from zerorev.files.values import (
     Three,
 )
 from zerorev.model.controller import CALL, HEADER_LINE
+from zerorev.model.cycle import Cycle
 from zerorev.model.settings import Settings
 
 __all__ = ["ColumnsForm", "HoleForm", "JobFile", "SettingsForm"]
@@ -54,6 +55,11 @@ class CallsForm(Form):
     after_job: CallTexts = Field(default=[], description=f"a list of calls after the last move; each {CALL}")
 
 
+@keys_of(Cycle)
+class CycleForm(Form):
+    """How a hole is drilled."""
+
+
 @keys_of(Settings)
 class SettingsForm(Form):
     """How to plan and how to run the motion."""
@@ -76,6 +82,10 @@ class SettingsForm(Form):
     )
     header: Annotated[list[Name], Field(max_length=20)] = Field(
         default=[], description=f"a list of lines that go before the program; each {HEADER_LINE}"
+    )
+    cycle: CycleForm = Field(
+        default=CycleForm(),
+        description="a mapping of kind, depth_mm and back_mm: how each hole is drilled that does not say so itself",
     )
 
 
@@ -112,8 +122,9 @@ class HoleForm(Form):
     )
     standoff_mm: StandoffsMm | None = Field(
         default=None,
-        description="as many numbers [mm] as psi_deg: stand-offs in order of motion, strictly falling from depth_mm to "
-        "the target, then strictly rising to depth_mm; left out, they are depth_mm, 0, depth_mm",
+        description="as many numbers [mm] as psi_deg: stand-offs in order of motion, falling from depth_mm to the "
+        "target, drawn back on the way by 2 mm at most to break chips, then strictly rising to depth_mm; left out, "
+        "they are depth_mm, 0, depth_mm",
     )
     branch: Branch | None = Field(
         default=None,
@@ -121,6 +132,9 @@ class HoleForm(Form):
     )
     group: Id | None = Field(
         default=None, description="text or a whole number: with which it is drilled where the order is by groups"
+    )
+    cycle: CycleForm | None = Field(
+        default=None, description="a mapping of kind, depth_mm and back_mm: how it is drilled; or null: as the job says"
     )
 
     @model_validator(mode="before")

@@ -1,7 +1,8 @@
 """A whole motion on one branch: where its joints turn round, and how far they go (theory §1, §5).
 
 A motion is given by its breakpoints, between which the spin is linear in the stand-off: segments 0 to n - 2, those
-before the corner are the plunge. Places are a segment and the fraction of it that is behind the tool.
+before the corner are the plunge, on the way of which the tool may draw back a little. Places are a segment and the
+fraction of it that is behind the tool.
 
 Lengths in m, angles in rad, rates along the motion in rad/m; controller angles. No kernel raises.
 """
@@ -24,7 +25,7 @@ RISE = 1e-6  # relative: a joint of constant speed does not dip, regardless of i
 
 
 @lean
-def rates_at(arm, plane, branch, standoff, psi, corner, k, x, first, count, work, out):  # type: ignore[no-untyped-def]
+def rates_at(arm, plane, branch, standoff, psi, k, x, first, count, work, out):  # type: ignore[no-untyped-def]
     """Rates along the motion at some of its places.
 
     Args:
@@ -33,7 +34,6 @@ def rates_at(arm, plane, branch, standoff, psi, corner, k, x, first, count, work
         branch: 0..7.
         standoff: of the breakpoints, shape (n,).
         psi: spins there, shape (n,).
-        corner: index of the breakpoint at which the plunge ends.
         k: segments, shape (N,).
         x: fractions of them, shape (N,).
         first: of the places that are wanted.
@@ -52,7 +52,7 @@ def rates_at(arm, plane, branch, standoff, psi, corner, k, x, first, count, work
         for j in range(size):
             a = k[start + j]
             slope = (psi[a + 1] - psi[a]) / (standoff[a + 1] - standoff[a])
-            along = -1.0 if a < corner else 1.0
+            along = -1.0 if standoff[a + 1] < standoff[a] else 1.0
             for i in range(6):
                 rate = along * (work[(THETA_S + i) * BLOCK + j] + slope * work[(THETA_PSI + i) * BLOCK + j])
                 out[start + j, i] = five * rate if i == 4 else rate
@@ -113,7 +113,7 @@ def turning_points(arm, plane, branch, standoff, psi, corner, nil, slowest, turn
         for j in range(counts[a]):
             k[n], x[n] = a, j / (counts[a] - 1.0)
             n += 1
-    rates_at(arm, plane, branch, standoff, psi, corner, k, x, 0, size, work, r)
+    rates_at(arm, plane, branch, standoff, psi, k, x, 0, size, work, r)
     for _ in range(TIMES_FINER):
         finer = np.zeros(size, dtype=np.bool_)  # whether the step behind a sample is to be divided
         marked = 0
@@ -137,7 +137,7 @@ def turning_points(arm, plane, branch, standoff, psi, corner, nil, slowest, turn
             if finer[n]:
                 for j in range(1, FINER):
                     more_k[m + j - 1], more_x[m + j - 1] = k[n], x[n] + j * (x[n + 1] - x[n]) / FINER
-                rates_at(arm, plane, branch, standoff, psi, corner, more_k, more_x, m, FINER - 1, work, more_r)
+                rates_at(arm, plane, branch, standoff, psi, more_k, more_x, m, FINER - 1, work, more_r)
                 m += FINER - 1
         size, k, x, r = grown, more_k, more_x, more_r
 
@@ -161,9 +161,7 @@ def turning_points(arm, plane, branch, standoff, psi, corner, nil, slowest, turn
                         for j in range(ROOT_POINTS):
                             near_k[j], near_x[j] = k[n], low + j * (high - low) / (ROOT_POINTS - 1)
                         near_x[ROOT_POINTS - 1] = high
-                        rates_at(
-                            arm, plane, branch, standoff, psi, corner, near_k, near_x, 0, ROOT_POINTS, work, near_r
-                        )
+                        rates_at(arm, plane, branch, standoff, psi, near_k, near_x, 0, ROOT_POINTS, work, near_r)
                         j = 1
                         while j < ROOT_POINTS - 1 and not near_r[j, i] * rate > 0.0:
                             j += 1

@@ -8,6 +8,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import UNIT_TOLERANCE, Array, finite, unit
+from zerorev.model.cycle import Cycle
 from zerorev.model.profile import Profile
 from zerorev.model.tool import Tool
 
@@ -30,6 +31,7 @@ class Hole:
         profile: a given motion, evaluated instead of searched for.
         branch: the branch of the given motion (0..7); with no `profile`, the only branch to search.
         group: with which it is drilled where the job's order is by groups.
+        cycle: how it is drilled; None: as the job says.
     """
 
     id: str
@@ -40,6 +42,15 @@ class Hole:
     profile: Profile | None = None
     branch: int | None = None
     group: str = ""
+    cycle: Cycle | None = None
+
+    def drilled_by(self, usual: Cycle) -> Cycle:
+        """How it is drilled.
+
+        Args:
+            usual: where it does not say so itself.
+        """
+        return self.cycle or usual
 
     def __post_init__(self) -> None:
         """Check the numbers; scale the direction; make psi_zero perpendicular to it."""

@@ -18,8 +18,9 @@ class Profile:
     """psi as a piecewise-linear function of the stand-off, leg by leg (thesis eq. 3.20 is the case of three points).
 
     Attributes:
-        standoff: breakpoints [m] in order of motion, shape (n,), n >= 3: strictly falling to the corner, strictly
-            rising after it. The corner is at 0, or below 0 where it is placed deeper to make good a blend.
+        standoff: breakpoints [m] in order of motion, shape (n,), n >= 3: falling to the corner, strictly rising after
+            it. On the way in the tool may draw back, to break chips. The corner is at 0, or below 0 where it is placed
+            deeper to make good a blend.
         psi: spin [rad] at the breakpoints, shape (n,).
     """
 
@@ -27,7 +28,7 @@ class Profile:
     psi: Array
 
     def __post_init__(self) -> None:
-        """Check that the stand-off falls to one corner and rises after it."""
+        """Check that the stand-off falls to one deepest point, the corner, and rises after it."""
         n = np.size(self.standoff)
         standoff, psi = finite(self.standoff, (n,), "profile, standoff"), finite(self.psi, (n,), "profile, psi")
         object.__setattr__(self, "standoff", standoff)
@@ -35,12 +36,13 @@ class Profile:
         if n < 3:
             raise InputError(f"a profile of {n} breakpoints", where="profile", accepted="three or more")
         steps, corner = np.diff(standoff), self.corner
-        if not ((steps[:corner] < 0).all() and (steps[corner:] > 0).all() and 0 < corner < n - 1):
+        inwards = 0 < corner < n - 1 and (steps[:corner] != 0).all() and steps[0] < 0 and steps[corner - 1] < 0
+        if not (inwards and (steps[corner:] > 0).all() and (standoff[1:corner] < standoff[0]).all()):
             raise InputError(
                 "the stand-off does not fall to the target and rise again",
                 where="profile, standoff",
-                accepted="strictly falling values, the target, strictly rising values, e.g. 50, 0, 50; pecking, in and "
-                "out of a hole in steps, is not planned",
+                accepted="falling values, the target, strictly rising values, e.g. 50, 0, 50; on the way in the tool "
+                "may draw back, e.g. 50, 25, 25.3, 0, 50",
             )
 
     @classmethod
@@ -54,6 +56,18 @@ class Profile:
     def corner(self) -> int:
         """Index of the breakpoint at the turning point of the motion."""
         return int(np.argmin(self.standoff))
+
+    @cached_property
+    def turns(self) -> tuple[int, ...]:
+        """Indices of the breakpoints at which the tool turns round, in and out again: the corner among them."""
+        inwards = np.diff(self.standoff) < 0
+        return tuple((np.flatnonzero(inwards[1:] != inwards[:-1]) + 1).tolist())
+
+    @property
+    def leg_lengths(self) -> Array:
+        """Path of the plunge and of the retract [m], shape (2,)."""
+        along = self.distance[[0, self.corner, -1]]
+        return np.asarray(np.diff(along))
 
     @property
     def distance(self) -> Array:

@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 from zerorev.errors import InputError
 from zerorev.model.controller import Calls, ExternalAxis, check_controller
 from zerorev.model.corner import CONTROLLERS, ControllerName, CornerKind, Turning, known_controller, turning_of
+from zerorev.model.cycle import Cycle
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
@@ -24,6 +25,7 @@ RUN = "How it is run"
 SEQUENCE = "How the holes follow each other"
 PROGRAM = "How the program fits the controller"
 NO_CALLS = Calls()
+IN_ONE_GO = Cycle()
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
 
 
@@ -37,6 +39,7 @@ class Settings:
         external_axes: where axes besides the robot's six stand.
         calls: programs of the controller that are called where the robot stands still.
         header: lines that begin with &, which a controller keeps before the program.
+        cycle: how each hole is drilled that does not say so itself.
     """
 
     min_rate: Annotated[
@@ -361,12 +364,15 @@ class Settings:
     external_axes: tuple[ExternalAxis, ...] = ()
     calls: Calls = NO_CALLS
     header: tuple[str, ...] = ()
+    cycle: Cycle = IN_ONE_GO
 
     def __post_init__(self) -> None:
         """Check ranges."""
         check(self)
         check_controller(self.robroot, self.external_axes, self.header)
         self._check_weights()
+        if self.cycle.kind != "single" and self.legs == "free":
+            raise InputError("free legs do not break chips", where="cycle", accepted="legs: straight, or kind: single")
         turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
 
     def _check_weights(self) -> None:

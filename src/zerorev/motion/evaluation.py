@@ -95,7 +95,7 @@ def evaluated(drilling: Drilling, profile: Profile, branch: int, settings: Setti
             through = profile.distance[segments] + turns[:, 1] * np.abs(np.diff(profile.standoff))[segments]
             path = joint_path(drilling, profile, branch, near=near, through=through.tolist())
         return Evaluation(None, None, _faults(drilling, branch, path))
-    legs = profile.standoff[[0, -1]] - profile.standoff[profile.corner]
+    legs = profile.leg_lengths
     limits = robot.limits
     score = Score(
         reversals_per_joint=tuple(sum(event.joint == i + 1 for _, _, event in events) for i in range(6)),

@@ -100,7 +100,8 @@ def held_at(drilling: Drilling, branch: int, standoff: Array, psi: Array, thrust
 def lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> float | None:
     """The lost motion at the tip that a motion is predicted to have [m] (the greatest of the levels of friction).
 
-    Over half a stroke on either side of the turn. None for a robot without dynamics; infinite where a joint cannot be
+    Over half a stroke on either side of the turn. None for a robot without dynamics, and of a motion that turns round
+    more than once, to break chips; infinite where a joint cannot be
     followed.
 
     Args:
@@ -110,7 +111,7 @@ def lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust: float
         thrust: of the drill while it plunges [N].
     """
     bodies, dynamics = drilling.bodies, drilling.robot.dynamics
-    if bodies is None or dynamics is None:
+    if bodies is None or dynamics is None or len(profile.turns) > 1:
         return None
     corner = profile.corner
     window = 0.5 * float(profile.standoff[0] - profile.standoff[corner])
@@ -140,7 +141,7 @@ def twins_lost_motion(drilling: Drilling, profile: Profile, branch: int, thrust:
 def lost_motion_of(drilling: Drilling, profile: Profile, branch: int, thrust: float = 0.0) -> LostMotion | None:
     """The lost motion of a motion and of its twin, and where loads change their sign without a reversal.
 
-    None for a robot without dynamics, and where a joint cannot be followed.
+    None for a robot without dynamics, of a motion that breaks chips, and where a joint cannot be followed.
 
     Args:
         drilling: robot, tool and hole.

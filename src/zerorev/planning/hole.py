@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.kernels._ahead import expect
 from zerorev.model._arrays import Array
+from zerorev.model.cycle import Cycle
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings, check_robot
@@ -30,6 +31,7 @@ from zerorev.planning.out_of_reach import shift_into_reach
 from zerorev.planning.tool_turn import hole_turn
 from zerorev.program.ways import Way
 from zerorev.search.bounds.proof import MOST_REVERSALS
+from zerorev.search.chip_break import chip_breaking
 from zerorev.search.cut_short import cut_short
 from zerorev.search.deepest import Deepest
 from zerorev.search.exact import can_run
@@ -69,6 +71,9 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     check_robot(robot, settings)
     if too_short(drilling):
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(_why_too_short(robot, hole),))
+    cycle = hole.drilled_by(settings.cycle)
+    if hole.profile is None and cycle.kind == "chip_break":
+        return _chip_breaking(drilling, settings, cycle)
     if hole.profile is None:
         found = optimum(drilling, settings)
         best = () if found.motion is None else gentlest_first(drilling, settings, found.motion)
@@ -155,6 +160,18 @@ def _planned(drilling: Drilling, settings: Settings, *best: Candidate) -> HolePl
             rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, drilling.hole)
             return replace(tried, findings=(*tried.findings, rejected))
     message = f"no motion was found that passes the check; of the best one: {why}"
+    findings = (Finding("error", "verification", message, drilling.hole.id),)
+    return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=findings)
+
+
+def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle) -> HolePlan:
+    """The answer with the best motion found that breaks chips and passes the check."""
+    found = chip_breaking(drilling, settings, cycle)
+    answer = _passing(drilling, settings, found)
+    if answer.verified is None or answer.verified.passed:
+        return answer
+    why = answer.verified.failures[0]
+    message = f"no motion that breaks chips was found that passes the check; of the last one: {why}"
     findings = (Finding("error", "verification", message, drilling.hole.id),)
     return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=findings)
 

@@ -314,7 +314,7 @@ def _asked_differs(robot: Robot, settings: Settings, stated: HolePlan, deepest: 
             f"standoff_mm[{profile.corner}]", float(mm(profile.standoff.min())), float(mm(settings.corner_standoff))
         )
     twist = float(np.abs(profile.twist_rate).max())
-    if profile.psi.size > 3 and twist > settings.max_twist * (1 + 1e-6):
+    if settings.legs == "free" and profile.psi.size > 3 and twist > settings.max_twist * (1 + 1e-6):
         yield differ("settings.max_twist_deg_per_mm", float(deg_per_mm(settings.max_twist)), float(deg_per_mm(twist)))
     if deepest and stated.deepest is not None and abs(stated.hole.depth - stated.deepest) > 1e-12:
         yield differ("depth_mm", float(mm(stated.hole.depth)), float(mm(stated.deepest)))

@@ -217,7 +217,8 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     best = order.judged(motion.profile, motion.branch, Evaluation(motion, score, ()))
     assert best is not None
     found = [planned]
-    for one in members(drilling, settings, best):
+    in_one_go = answer.hole.drilled_by(settings.cycle).kind == "single"
+    for one in members(drilling, settings, best) if in_one_go else (best,):
         if one is best or _affordable(order, one, best):
             found += _turned(drilling, settings, one, planned)
     return tuple(found)

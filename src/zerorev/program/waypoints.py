@@ -60,37 +60,50 @@ def waypoints(profile: Profile, lead_in: float, reach: float = 0.0) -> tuple[tup
     corner = 0
     for k in range(1, len(profile.standoff)):
         leg: Leg = "plunge" if k <= profile.corner else "retract"
-        last = k == len(profile.standoff) - 1
-        comment = _corner(profile) if k == profile.corner else "end of the stroke" if last else "breakpoint"
-        end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, comment)
-        if reach > 0 and k == profile.corner:
-            points.extend(_split(points[-1], _before(points[-1], end, reach)))
-            points.append(replace(end, linear=False))
-        elif reach > 0 and k == profile.corner + 1:
-            leave = replace(_before(end, points[-1], reach), leg=leg, comment="end of the joint moves", linear=False)
-            points.append(leave)
-            points.extend(_split(leave, end))
-        else:
-            points.extend(_split(points[-1], end))
+        end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, _said_of(profile, k))
+        points.extend(_joint_moves(points[-1], end, k - 1 in profile.turns, k in profile.turns, reach))
         if k == profile.corner:
             corner = len(points) - 1
     return tuple(points), corner
 
 
-def _before(start: Waypoint, end: Waypoint, reach: float) -> Waypoint:
-    """The point so far [m] before the end of a straight piece of a motion."""
-    share = reach / abs(end.standoff - start.standoff)
+def _said_of(profile: Profile, k: int) -> str:
+    """What a breakpoint is."""
+    if k == profile.corner:
+        below = -float(profile.standoff[k])
+        return "target" if below == 0 else f"corner, {below * 1e3:.4g} mm below the target"
+    if k in profile.turns:
+        inwards = profile.standoff[k] < profile.standoff[k - 1]
+        return "chips are broken" if inwards else "drawn back"
+    return "end of the stroke" if k == len(profile.standoff) - 1 else "breakpoint"
+
+
+def _joint_moves(start: Waypoint, end: Waypoint, from_turn: bool, to_turn: bool, reach: float) -> list[Waypoint]:
+    """The points of a straight piece after its start, the pieces next to where the tool turns round as joint moves."""
+    length = abs(end.standoff - start.standoff)
+    first, last = reach * from_turn, reach * to_turn
+    if reach == 0 or first + last == 0:
+        return _split(start, end)
+    if first + last >= length:
+        return [replace(end, linear=False)]
+    points, here = list[Waypoint](), start
+    if first > 0:
+        here = replace(_on_the_way(start, end, first), comment="end of the joint moves", linear=False)
+        points.append(here)
+    if last == 0:
+        return [*points, *_split(here, end)]
+    enter = replace(_on_the_way(start, end, length - last), comment="begin of the joint moves")
+    return [*points, *_split(here, enter), replace(end, linear=False)]
+
+
+def _on_the_way(start: Waypoint, end: Waypoint, way: float) -> Waypoint:
+    """The point so far [m] behind the start of a straight piece."""
+    share = way / abs(end.standoff - start.standoff)
     return replace(
         end,
-        standoff=end.standoff + share * (start.standoff - end.standoff),
-        psi=end.psi + share * (start.psi - end.psi),
-        comment="begin of the joint moves",
+        standoff=start.standoff + share * (end.standoff - start.standoff),
+        psi=start.psi + share * (end.psi - start.psi),
     )
-
-
-def _corner(profile: Profile) -> str:
-    below = -float(profile.standoff[profile.corner])
-    return "target" if below == 0 else f"corner, {below * 1e3:.4g} mm below the target"
 
 
 def _split(start: Waypoint, end: Waypoint) -> list[Waypoint]:

@@ -106,21 +106,24 @@ def moves_as_planned(
     profile, settings = motion.profile, plan.settings
     names = ["the first point", *(f"line {move.line}" for move in written.moves)]
     steps = np.diff(at.standoff)
-    if not (0 < at.corner < len(steps) and (steps[: at.corner] < 0).all() and (steps[at.corner :] > 0).all()):
-        yield "the points do not lead in to one deepest point and out again"
-        return
-
-    # distance along the planned path, below 0 before the stroke; the corner is where the plan has it
-    depth, corner = float(profile.standoff[0]), float(profile.standoff.min())
-    inwards = np.arange(len(at.standoff)) <= at.corner
-    distance = np.where(inwards, depth - at.standoff, depth + at.standoff - 2 * corner)
-    knots = profile.distance
-    turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
-    psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
-    off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
     ends = [written.start, *(move.end for move in written.moves)]
     slack = np.array([length_slack(plan.robot, end) for end in ends])
     slack_angle = np.array([angle_slack(plan.robot, end) for end in ends])
+
+    # distance along the planned path, below 0 before the stroke, beyond its length after it
+    depth, knots = float(profile.standoff[0]), profile.distance
+    distance = np.concatenate([[0.0], np.cumsum(np.abs(steps))])
+    distance += depth - float(at.standoff[at.lead]) - distance[at.lead]
+    planned = profile.at(distance)[0] + np.maximum(-distance, 0) + np.maximum(distance - knots[-1], 0)
+    beside = np.abs(planned - at.standoff) > np.cumsum(2 * slack)
+    if not (0 < at.corner < len(steps) and (np.abs(steps) > 0).all()) or beside.any():
+        place = f", first at {names[int(np.argmax(beside))]}" if beside.any() else ""
+        yield f"the points do not lead in to one deepest point and out again as planned{place}"
+        return
+
+    turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
+    psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
+    off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
     steepest = float(np.abs(profile.twist_rate).max())
     for name, apart, angle, length, little in zip(names, off, turned, slack, slack_angle, strict=True):
         if apart > length or angle > little + length * steepest:

@@ -72,6 +72,8 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
         yield f"the joints at the start are of branch {branch}, the plan says {motion.branch}"
     if hole.branch is not None and hole.branch != motion.branch:
         yield f"branch {hole.branch} is asked for, the plan says {motion.branch}"
+    if hole_plan.status == "planned":
+        yield from _breaks_as_asked(robot, settings, hole_plan, motion)
     bound = settings.psi_bound
     if hole_plan.status == "planned" and bound is not None:
         psi = float(np.abs(motion.profile.psi).max())
@@ -83,6 +85,21 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
     offset = float(np.hypot(wrist[0], wrist[1]))
     if not abs(offset - hole_plan.wrist_offset) <= OFFSET_TOLERANCE * robot.size:
         yield f"the wrist centre is {_mm(offset)} off the drill axis, the plan says {_mm(hole_plan.wrist_offset)}"
+
+
+def _breaks_as_asked(robot: Robot, settings: Settings, hole_plan: HolePlan, motion: Motion) -> Iterator[str]:
+    """Chips must be broken where the cycle asks for it, by drawing back as far, and nowhere else."""
+    hole, profile = hole_plan.hole, motion.profile
+    cycle = hole.cycle or settings.cycle
+    wanted = [place for at in cycle.breaks(hole.depth) for place in (at, at + cycle.back)]
+    found = [float(profile.standoff[k]) for k in profile.turns if k < profile.corner]
+    if len(found) != len(wanted):
+        yield f"the tool turns round {len(found)} times before the corner, {len(wanted)} times are asked for"
+        return
+    for there, asked in zip(found, wanted, strict=True):
+        if abs(there - asked) > PLACE_TOLERANCE * robot.size:
+            yield f"the tool turns round at {_mm(there)} of stand-off, asked is {_mm(asked)}"
+            return
 
 
 def joints_stated(robot: Robot, motion: Motion, track: Track) -> Iterator[str]:

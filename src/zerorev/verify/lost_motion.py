@@ -37,7 +37,7 @@ def lost_motion(course: Course, thrust: float) -> LostMotion | None:
         course: the motion.
         thrust: of the drill while it plunges [N].
     """
-    if course.robot.dynamics is None:
+    if course.robot.dynamics is None or len(course.profile.turns) > 1:
         return None
     at_tip = _at_tip(course, thrust)
     if not np.isfinite(at_tip):

@@ -57,7 +57,7 @@ class Course:
         counts = np.maximum(LEAST_STEPS, np.ceil(STEPS_PER_LEG * lengths / leg - 1e-9)).astype(int) + 1
         self.segment = np.repeat(np.arange(lengths.size), counts)
         self.fraction = np.concatenate([np.linspace(0.0, 1.0, count) for count in counts])
-        self._along = np.where(before, -1.0, 1.0)
+        self._along = np.sign(self._steps[0])
 
     def joints(self, segment: npt.NDArray[np.intp], fraction: Array) -> Array:
         """Joints in order of motion [rad], shape (N, 6), turns as at the start; NaN out of reach or singular."""

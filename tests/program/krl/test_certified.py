@@ -325,7 +325,7 @@ def swapped(text, old, new):
         (lambda t: swapped(t, "X 100.0000,Y", "X 100.0010,Y"), r"the tool frame of the program is 0\.001 mm"),
         (lambda t: swapped(t, "C 0.000000}\n$BASE", "C 0.000010}\n$BASE"), r"the tool frame of the program is"),
         (lambda t: swapped(t, "$BASE={FRAME: X 0.0000", "$BASE={FRAME: X 0.0010"), r"the part frame of the program is"),
-        (lambda t: edited(t, line_of(t, "target"), "X", 5e-3), "no point of the program lies at the plan's breakpoint"),
+        (lambda t: edited(t, line_of(t, "target"), "X", 5e-3), "do not lead in to one deepest point"),
         (lambda t: edited(t, line_of(t, "target"), "Y", 1e-3), "off the planned axis"),
         (lambda t: edited(t, line_of(t, "target"), "B", 1e-3), "off the planned axis"),
         (lambda t: edited(t, line_of(t, "target"), "C", 1e-3), "off the planned axis"),

@@ -1,0 +1,77 @@
+"""How a hole is drilled: in one go, or drawing the drill back on the way to break the chips."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from zerorev.errors import InputError
+from zerorev.model._arrays import Array
+from zerorev.model.stated import Choice, Number, check, with_attributes
+from zerorev.model.units import MM
+
+__all__ = ["MOST_BACK", "Cycle", "CycleKind"]
+
+CycleKind = Literal["single", "chip_break"]
+MOST_PECKS = 200
+MOST_BACK = 2e-3  # [m] that a drill is drawn back within one motion: further is a retract
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """How a hole is drilled."""
+
+    kind: Annotated[
+        CycleKind,
+        Choice(
+            words={
+                "single": "in one go",
+                "chip_break": "drawing back by back_mm each depth_mm, the drill in the hole, all of it one motion",
+            }
+        ),
+    ] = "single"
+    depth: Annotated[
+        float | None, Number("drilled from one break of the chips to the next", MM, none="no chips are broken", above=0)
+    ] = None
+    back: Annotated[
+        float, Number("how far the tool draws back to break them, at the feed of the plunge", MM, above=0)
+    ] = 0.3e-3
+
+    def __post_init__(self) -> None:
+        """Check ranges, and that a depth is there where chips are broken."""
+        check(self)
+        if self.kind == "chip_break" and self.depth is None:
+            raise InputError("breaks chips, but not how often", where="cycle", accepted="depth_mm beside it, e.g. 5")
+        if self.back > MOST_BACK:
+            raise InputError(
+                f"draws back by {self.back * 1e3:g} mm", where="cycle, back_mm", accepted=f"{MOST_BACK * 1e3:g} or less"
+            )
+        if self.depth is not None and self.back >= self.depth:
+            raise InputError(
+                f"draws back by {self.back * 1e3:g} mm each {self.depth * 1e3:g} mm", where="cycle, back_mm",
+                accepted="less than depth_mm",
+            )  # fmt: skip
+
+    def breaks(self, depth: float) -> Array:
+        """Stand-offs at which chips are broken in a stroke, falling [m], shape (n,).
+
+        Args:
+            depth: of the stroke [m].
+
+        Raises:
+            InputError: there are too many.
+        """
+        if self.kind != "chip_break" or self.depth is None:
+            return np.empty(0)
+        if depth / self.depth > MOST_PECKS:
+            raise InputError(
+                f"{depth / self.depth:.0f} pecks in {depth * 1e3:g} mm", where="cycle, depth_mm",
+                accepted=f"{MOST_PECKS} or fewer, so {depth * 1e3 / MOST_PECKS:g} mm or more",
+            )  # fmt: skip
+        found = depth - self.depth * np.arange(1, MOST_PECKS + 1)
+        return np.asarray(found[found > self.back * 1.000001])
+
+
+Cycle.__doc__ = with_attributes(Cycle)
