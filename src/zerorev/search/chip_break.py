@@ -90,7 +90,7 @@ def _way_back(
         drilling: robot, tool and hole.
         settings: with the motion threshold, and the greatest twist.
         branch: 0..7.
-        end: stand-off [m] and spin [rad] at which the way back ends, and the plunge goes on.
+        end: stand-off [m] and spin [rad] at which the way back ends, and the plunge continues.
         slopes: of plunge and retract [rad/m].
         back: length of the way back [m].
     """
