@@ -17,7 +17,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import FULL_TURN, joints_along
 from zerorev.motion.kinematics import forward
 
-__all__ = ["REACH", "JointCorner", "joint_corner"]
+__all__ = ["REACH", "JointCorner", "joint_corner", "off_axis_and_tilt"]
 
 # lengths for an arm of size 1 (`Robot.size`)
 REACH = 1e-3  # [m] the most, where nothing else is asked
@@ -76,7 +76,7 @@ def joint_corner(
         joints = _ends(drilling, motion, reach)
         if np.isnan(joints).any():
             break
-        off_axis, tilted = _greatest(drilling, joints)
+        off_axis, tilted = off_axis_and_tilt(drilling, joints)
         excess = max(off_axis / tolerance, tilted / tilt)
         if excess <= 1:
             return JointCorner(reach, off_axis, tilted, joints)
@@ -101,8 +101,13 @@ def _ends(drilling: Drilling, motion: Motion, reach: float) -> Array:
     return np.array([ends[1], ends[0], ends[2]])
 
 
-def _greatest(drilling: Drilling, joints: Array) -> tuple[float, float]:
-    """Greatest distance from the drill axis [m] and tilt [rad] on the triangle of three joint vectors (3, 6)."""
+def off_axis_and_tilt(drilling: Drilling, joints: Array) -> tuple[float, float]:
+    """Greatest distance from the drill axis [m] and tilt [rad] on the triangle of three joint vectors.
+
+    Args:
+        drilling: robot, tool and hole.
+        joints: controller angles [rad], shape (3, 6).
+    """
     hole = drilling.hole
     T = forward(drilling.robot, _shares() @ joints) @ drilling.tool.T_flange_tcp
     off_axis = np.linalg.norm(np.cross(T[:, :3, 3] - hole.target, hole.direction), axis=1)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
+from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import Corner, HolePlan, Motion
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
-from zerorev.motion.joint_corner import joint_corner
+from zerorev.motion.joint_corner import joint_corner, off_axis_and_tilt
+from zerorev.motion.joint_path import joints_along
 
 __all__ = ["MOST_TILT", "corner_findings", "corner_of"]
 
+CLOSE = 9  # samples from one end of a joint move to the other
 MOST_TILT = float(np.deg2rad(0.01))  # of the tool against the drill axis on joint moves
 
 
@@ -37,10 +42,25 @@ def corner_of(drilling: Drilling, settings: Settings, motion: Motion) -> Corner:
                 "stop", 0.0, (0.0, 0.0), "an exact stop, for joint moves leave the axis too far", 0.0, 0.0, 0.0
             )
         reach, off_axis, tilt = moves.reach, moves.off_axis, moves.tilt
+        for joints in _at_breaks(drilling, motion, reach):
+            there = off_axis_and_tilt(drilling, joints)
+            off_axis, tilt = max(off_axis, there[0]), max(tilt, there[1])
         radius = settings.blend_share * reach
     share = radius / turning.radius if turning.radius > 0 else 0.0
     least, most = turning.interval
     return Corner(kind, turning.shortfall * share, (least * share, most * share), law, reach, off_axis, tilt)
+
+
+def _at_breaks(drilling: Drilling, motion: Motion, reach: float) -> Iterator[Array]:
+    """Joints at the ends of the joint moves that meet where chips are broken [rad], shape (3, 6) each."""
+    profile = motion.profile
+    for k in profile.turns:
+        if k != profile.corner:
+            knots = profile.distance
+            before, behind = (min(reach, float(knots[k + n] - knots[k + n - 1])) for n in (0, 1))
+            along = np.concatenate([np.linspace(-before, 0.0, CLOSE), np.linspace(0.0, behind, CLOSE)[1:]])
+            standoff, psi = profile.at(knots[k] + along)
+            yield joints_along(drilling, motion.branch, standoff, psi)[[0, CLOSE - 1, -1]]
 
 
 def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
@@ -52,6 +72,13 @@ def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]
     """
     corner, asked = answer.corner, settings.turning
     if corner is None or corner.kind == asked.kind:
+        if corner is not None and max(corner.off_axis / settings.corner_tolerance, corner.tilt / MOST_TILT) > 1:
+            message = (
+                f"where chips are broken the joint moves leave the drill axis by {corner.off_axis * 1e3:.3g} mm and "
+                f"{np.rad2deg(corner.tilt):.2g} deg: more than asked for (corner_tolerance_mm); less back_mm brings "
+                "them nearer"
+            )
+            return (Finding("warning", "corner", message, answer.hole.id),)
         return ()
     message = (
         f"no joint moves at the corner stay within {settings.corner_tolerance * 1e3:g} mm and "

@@ -18,6 +18,7 @@ from zerorev.verify.claims import (
     as_asked,
     blend_keeps,
     complete,
+    corner_keeps,
     joints_stated,
     reversals_claimed,
     score_claimed,
@@ -98,6 +99,7 @@ def verify_hole(
         examined.append((where, piece))
         on_blends += curve.psi.size
 
+    failures += corner_keeps(robot, tool, settings, hole_plan)
     figures = []
     for where, piece in examined:
         position, rotation = residual(robot, tool, hole, piece.path, piece.joints)
@@ -149,7 +151,7 @@ def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -
         hole_plan: the hole, its motion and what is claimed of that.
     """
     own = hole_plan
-    return fingerprint(robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset)
+    return fingerprint(robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset, own.corner)
 
 
 def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:

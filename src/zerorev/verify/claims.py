@@ -13,11 +13,12 @@ from zerorev.model.plan import HolePlan, Motion, Score
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import branch_of
+from zerorev.verify.joint_corner import corner_figures
 from zerorev.verify.measure import Reversals, mean_rates, slowest_at, travel
 from zerorev.verify.path import Track
 from zerorev.verify.sound import least_room, nearest_to_limit
 
-__all__ = ["as_asked", "blend_keeps", "complete", "joints_stated", "reversals_claimed", "score_claimed"]
+__all__ = ["as_asked", "blend_keeps", "complete", "corner_keeps", "joints_stated", "reversals_claimed", "score_claimed"]
 
 # lengths and rates for an arm of size 1 (`Robot.size`)
 PLACE_TOLERANCE = 1e-9  # [m]
@@ -25,6 +26,7 @@ OFFSET_TOLERANCE = 1e-6  # [m]
 JOINT_TOLERANCE = 1e-6  # [rad]; a plan file may have rounded its angles a little
 TRAVEL_TOLERANCE = 1e-6  # relative
 RATE_TOLERANCE = 0.02  # relative
+SAMPLED = 0.01  # relative: of a greatest distance that is sampled
 RATE_FLOOR = 2e-4  # [rad/m], about 1e-5 deg/mm
 
 
@@ -100,6 +102,39 @@ def _breaks_as_asked(robot: Robot, settings: Settings, hole_plan: HolePlan, moti
         if abs(there - asked) > PLACE_TOLERANCE * robot.size:
             yield f"the tool turns round at {_mm(there)} of stand-off, asked is {_mm(asked)}"
             return
+
+
+def corner_keeps(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> Iterator[str]:
+    """Joint moves at the corner must keep each joint's direction, and the tool as near to the axis as stated and asked.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        settings: as planned.
+        hole_plan: with a motion, and with what it states of its corner.
+    """
+    motion, corner = hole_plan.motion, hole_plan.corner
+    if motion is None or corner is None:
+        return
+    asked = settings.turning.kind
+    if corner.kind != asked and corner.kind != "stop":
+        yield f"the corner is of kind {corner.kind}, asked is {asked}"
+    if corner.kind != "joint":
+        return
+    if not 0 < corner.reach <= settings.turning.reach * (1 + 1e-9):
+        asked_for = _mm(settings.turning.reach)
+        yield f"the joint moves at the corner begin {_mm(corner.reach)} from it, asked are {asked_for}"
+        return
+    found = corner_figures(robot, tool, hole_plan.hole, motion, corner.reach)
+    for name, keeps in zip(robot.joint_names, found.keeps, strict=True):
+        if not keeps:
+            yield f"{name} moves another way on the joint moves at the corner than on the leg"
+    # both are sampled, each in its own way
+    if not found.off_axis <= corner.off_axis * (1 + SAMPLED) + PLACE_TOLERANCE * robot.size:
+        stated = _mm(corner.off_axis)
+        yield f"the tip leaves the drill axis by {_mm(found.off_axis)} at the corner, the plan says {stated}"
+    if not found.tilt <= corner.tilt * (1 + SAMPLED) + JOINT_TOLERANCE:
+        yield f"the tool tilts by {_deg(found.tilt)} at the corner, the plan says {_deg(corner.tilt)}"
 
 
 def joints_stated(robot: Robot, motion: Motion, track: Track) -> Iterator[str]:

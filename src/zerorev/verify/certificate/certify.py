@@ -20,6 +20,7 @@ from zerorev.model.plan import Certificate, HolePlan, Plan, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
+from zerorev.verify.certificate.at_corner import planned_corner
 from zerorev.verify.certificate.claims import claimed_reversals, false_claims
 from zerorev.verify.certificate.legs import planned_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
@@ -60,7 +61,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         return nothing("refuted", wrong)
     if wrong := tuple(as_asked(robot, tool, settings, hole_plan, motion)):
         return nothing("refuted", wrong)
-    return certify_motion(
+    certificate = certify_motion(
         robot,
         tool,
         hole_plan.hole,
@@ -71,6 +72,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         claims=score,
         limit_margin=settings.limit_margin,
     )
+    return planned_corner(robot, tool, settings, hole_plan, certificate)
 
 
 def certify_motion(

@@ -17,12 +17,13 @@ import numpy as np
 from zerorev.model.plan import Certificate, HolePlan, Plan
 from zerorev.model.written import Drilled, WrittenHole, WrittenProgram
 from zerorev.verify.as_planned import frames_as_planned, moves_as_planned, places
+from zerorev.verify.certificate.at_corner import joint_corners, near_the_axis
 from zerorev.verify.certificate.claims import Proven, claimed_reversals
 from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.certificate.proof import nothing, prove
 from zerorev.verify.claims import complete
-from zerorev.verify.printed import joints_of
+from zerorev.verify.printed import joints_of, length_slack
 
 __all__ = ["certify_program", "certify_program_hole"]
 
@@ -88,6 +89,9 @@ def certify_program_hole(
         path = written_motion(plan, program, written, hole_plan.hole, at)
         margin = plan.settings.limit_margin
         proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin)
+        corners = joint_corners(path)
+        slack = max((length_slack(plan.robot, move.end) for move in written.moves), default=0.0)
+        proof = near_the_axis(plan.robot, plan.tool, plan.settings, hole_plan, corners, slack, proof)
     return replace(proof, reasons=tuple(_in_file(written, reason) for reason in proof.reasons))
 
 
