@@ -26,6 +26,7 @@ from zerorev.verify.certificate.legs import planned_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.certificate.proof import nothing, prove
 from zerorev.verify.claims import as_asked, complete
+from zerorev.verify.mix import Mixes
 
 __all__ = ["certify_hole", "certify_motion", "certify_plan"]
 
@@ -46,7 +47,9 @@ def certify_plan(plan: Plan) -> Plan:
     return replace(plan, holes=holes)
 
 
-def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> Certificate:
+def certify_hole(
+    robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, mixes: Mixes | None = None
+) -> Certificate:
     """Prove or refute what a plan claims of one hole; a wrong plan is reported, never raised.
 
     Args:
@@ -54,6 +57,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         tool: the drill.
         settings: blend, corner and bounds as planned.
         hole_plan: what is claimed.
+        mixes: blends that are proven besides the parabola, of any curve; None: none.
     """
     wrong = tuple(complete(hole_plan))
     motion, score = hole_plan.motion, hole_plan.score
@@ -71,6 +75,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         passing_blend=settings.passing_blend,
         claims=score,
         limit_margin=settings.limit_margin,
+        mixes=mixes,
     )
     return planned_corner(robot, tool, settings, hole_plan, certificate)
 
@@ -86,6 +91,7 @@ def certify_motion(
     passing_blend: float = 0.0,
     claims: Score | None = None,
     limit_margin: float = 0.0,
+    mixes: Mixes | None = None,
 ) -> Certificate:
     """Prove or refute that a motion reverses no joint; for any numbers, such as those read back from a program.
 
@@ -100,10 +106,11 @@ def certify_motion(
         passing_blend: radius of the blends at the other inner breakpoints [m]; 0 for none.
         claims: figures to be held against the motion, or None.
         limit_margin: room that every joint has to keep to its limits [rad].
+        mixes: blends that are proven besides the parabolas, of any curve; None: none.
     """
     with ball_arithmetic():
         path = planned_motion(robot.arm, tool, hole, profile, blend, passing_blend)
         if claims is None:
-            return prove(robot, path, joints, margin=limit_margin)
+            return prove(robot, path, joints, margin=limit_margin, mixes=mixes)
         untrue = partial(false_claims, claims)
-        return prove(robot, path, joints, claimed_reversals(claims), untrue, margin=limit_margin)
+        return prove(robot, path, joints, claimed_reversals(claims), untrue, margin=limit_margin, mixes=mixes)

@@ -196,10 +196,12 @@ class Blend(NamedTuple):
     Attributes:
         arc: the parabola.
         first: index in the motion's `legs` of the bit ending at the bend; the parabola replaces it and the next.
+        moves: the two straight moves that meet at the bend.
     """
 
     arc: Arc
     first: int
+    moves: tuple[Segment, Segment]
 
 
 class Motion(NamedTuple):
@@ -255,7 +257,7 @@ def motion_of(
             entry, leave = one - cut / segment.length, cut / behind.length
             if entry > here:  # else the blend before ends where this one begins
                 legs.append(segment.part(here, entry))
-            blends.append(Blend(segment.blend(behind, cut), len(legs)))
+            blends.append(Blend(segment.blend(behind, cut), len(legs), (segment, behind)))
             legs += [segment.part(entry, one, k), behind.part(zero, leave)]
             here, counts[k] = leave, len(legs) - 1
         else:

@@ -14,8 +14,11 @@ from zerorev.model.robot import Robot
 from zerorev.verify.certificate.arm import Setting, posture_of
 from zerorev.verify.certificate.claims import Proven
 from zerorev.verify.certificate.joints import Joints
-from zerorev.verify.certificate.path import Arc, JointLeg, Motion
+from zerorev.verify.certificate.mix import mixed
+from zerorev.verify.certificate.path import Arc, Blend, JointLeg, Motion
+from zerorev.verify.certificate.triangle import Triangle
 from zerorev.verify.certificate.walk import LostError, Slowest, Walk
+from zerorev.verify.mix import Mixes
 
 __all__ = ["nothing", "prove"]
 
@@ -31,6 +34,7 @@ def prove(
     untrue: Callable[[Proven], Iterable[str]] = lambda proven: (),
     *,
     margin: float = 0.0,
+    mixes: Mixes | None = None,
 ) -> Certificate:
     """Prove or refute that a motion reverses no joint.
 
@@ -43,6 +47,7 @@ def prove(
         reversing: joints that are said to reverse, counted from 0: they are not certified.
         untrue: one sentence for each statement about the motion that does not hold, from what is proven of it.
         margin: room that every joint has to keep to its limits [rad].
+        mixes: blends that are proven besides the parabolas, of any curve; None: none.
     """
     posture = posture_of(robot.arm, stated[0])
     if posture is None:
@@ -64,9 +69,12 @@ def prove(
                 ends.append(joints.after(arc, ends[-1]))
             else:
                 ends.append(joints.end(arc, on.along(arc, ends[-1], slowest)))
-        for arc, first in motion.blends:
-            cut = joints.end(arc, walk.along(arc, ends[first], blended))
-            _same_turns(walk, arc, cut, ends[first + 2])
+        for blend in motion.blends:
+            arc = blend.arc
+            cut = joints.end(arc, walk.along(arc, ends[blend.first], blended))
+            _same_turns(walk, arc, cut, ends[blend.first + 2])
+            if mixes is not None:
+                _mix(walk, blend, mixes, blended)
     except LostError as lost:
         (walk.refuted if lost.proven else walk.undecided).append(lost.reason)
         nan = np.full(6, np.nan)
@@ -104,6 +112,22 @@ def _straight(leg: Arc | JointLeg) -> Arc:
     if isinstance(leg, JointLeg):
         raise LostError("the first move of the motion is not straight", proven=True)
     return leg
+
+
+def _mix(walk: Walk, blend: Blend, mixes: Mixes, slowest: Slowest) -> None:
+    """All blends at a bend, of any curve: their joints keep the directions of the legs."""
+    triangle = Triangle.between(*blend.moves)
+    found = mixed(walk.setting, triangle, {joint: walk.direction.get(joint, 0) for joint in walk.followed}, mixes)
+    walk.pieces += found.boxes
+    slowest.bound = np.fmin(slowest.bound, found.least)
+    for joint, counter in found.turns.items():
+        walk.refuted.append(f"{walk.names[joint]} turns round: it moves the other way {counter.said(triangle)}")
+    for joint, at in found.undecided.items():
+        what = f"the direction of {walk.names[joint]} could not be decided"
+        walk.undecided.append(f"{what} {triangle.place(*at)}, for every blend")
+    for joint, at in found.still.items():
+        walk.paused.setdefault(joint, {}).setdefault(0, triangle.place(*at))
+    walk.followed -= {*found.turns, *found.undecided}
 
 
 def _same_turns(walk: Walk, arc: Arc, blended: list[arb], leg: list[arb]) -> None:
