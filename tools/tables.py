@@ -1,4 +1,4 @@
-"""The tables of the documentation that are made from the code: settings, criteria, and the rooms of the house.
+"""The tables of the documentation that are made from the code: settings, criteria, robots, the rooms of the house.
 
 A page has a table between two marks, `<!-- settings: made by make reference -->` and `<!-- end of settings -->`.
 `python tools/tables.py` rewrites them; a test fails where one is out of date.
@@ -12,10 +12,12 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+from zerorev.files.io import read_robot, robot_names
 from zerorev.files.stated_forms import default_of
 from zerorev.model.measures import CRITERIA
 from zerorev.model.settings import Settings
 from zerorev.model.stated import Choice, Stated, Weighed, stated
+from zerorev.report.words.tables import wrist_reach
 
 ROOT = Path(__file__).parents[1]
 PAGES, HOUSE = ROOT / "docs", ROOT / "src" / "zerorev"
@@ -59,6 +61,26 @@ def criteria_table() -> str:
     return _table(("criterion", "cost", "figure in a plan file"), rows)
 
 
+def robots_table() -> str:
+    """The robots that ship, and how their controllers count."""
+    return _table(
+        ("name", "robot", "reach of the wrist", "J3 on the pendant", "its base lies higher by", "pulses"), _robots()
+    )
+
+
+def _robots() -> Iterator[tuple[str, ...]]:
+    for robot in map(read_robot, robot_names()):
+        height = robot.T_root_base[2, 3] * 1e3
+        yield (
+            f"`{robot.name}`",
+            f"{robot.manufacturer} {robot.model}",
+            f"{wrist_reach(robot) * 1e3:.0f} mm",
+            "against the ground" if robot.display.j3_less_j2 else "",
+            f"{height:g} mm" if height else "",
+            "known" if robot.pulses_per_deg else "",
+        )
+
+
 def rooms_table() -> str:
     """What each room is about and what is in it, in the order of the layers that import-linter checks."""
     return _table(("room", "what it is", "in it"), _rooms())
@@ -96,6 +118,7 @@ def _inside(folder: Path) -> str:
 TABLES: dict[str, Callable[[], str]] = {
     "settings": settings_table,
     "criteria": criteria_table,
+    "robots": robots_table,
     "rooms": rooms_table,
 }
 

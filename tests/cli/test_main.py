@@ -397,6 +397,19 @@ class TestRobots:
         out = capsys.readouterr().out
         assert "kroshu/kuka_robot_descriptions" in out
         assert "beware" in out
+        assert "the controller counts" not in out
+
+    def test_how_a_controller_counts(self, capsys):
+        assert main(["robots", "fanuc_lrmate200id"]) == cli.FINE
+        out = " ".join(capsys.readouterr().out.split())
+        assert "the controller shows J3 less J2, its angle against the ground" in out
+        assert "the controller counts from (0, 0, 330) mm" in out
+        assert main(["robots", "yaskawa_ma2010"]) == cli.FINE
+        assert "S 1341.38 L 1907.67 U 1592.89" in " ".join(capsys.readouterr().out.split())
+        assert main(["robots"]) == cli.FINE
+        out = " ".join(capsys.readouterr().out.split())
+        assert out.count("the controller shows J3 less J2") == 1  # of all of them together
+        assert "J3 -70..205" in out
 
     def test_json(self, capsys):
         assert main(["robots", "--json"]) == cli.FINE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ pytest.importorskip("nicegui")
 from oracles.published import POSITIONS
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
+from zerorev.model.robot import Display
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward, tcp_pose
 from zerorev.report.scene.motion_look import curves, held, look
@@ -40,6 +42,13 @@ def test_the_curves_are_joint_angles_that_hold_the_tool_where_the_spin_says(robo
     standoff, psi = P.profile.at(across[0] / 1e3 + P.hole.depth)
     there = forward(robot, angles) @ tool.T_flange_tcp
     np.testing.assert_allclose(there, tcp_pose(P.hole, standoff, psi), atol=2e-4)
+
+
+def test_a_curve_names_the_joint_that_turns(robot, tool):
+    shows_ground = replace(robot, arm=robot.arm._replace(sign=(-1, 1, -1, -1, 1, -1)), display=Display(j3_less_j2=True))
+    names = curves(Drilling(shows_ground, tool, P.hole), P.profile, P.branch, Settings(), 20).names
+    assert names == ("A1", "A2", "A3 against link 2", "A4", "A5", "A6")
+    assert curves(Drilling(robot, tool, P.hole), P.profile, P.branch, Settings(), 20).names == robot.joint_names
 
 
 def test_each_reversal_is_marked_on_its_joint_where_it_is(robot, tool):

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
+from zerorev.files.io import read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.profile import Profile
 from zerorev.motion.evaluation import evaluate
-from zerorev.motion.kinematics import tcp_pose, wrist_offset
+from zerorev.motion.kinematics import forward, tcp_pose, wrist_offset
 from zerorev.motion.links import link_frames
 from zerorev.report.scene.cell_data import slice_data
 from zerorev.report.scene.replay import replay_page
@@ -152,6 +154,7 @@ def test_another_hole(open_replay, plan):
     page = open_replay()
     page.get_by_test_id("replay-hole").select_option("1")
     assert page.get_by_test_id("replay-verdict").inner_text() == "0 reversals"
+    assert page.get_by_test_id("cell-shown-note").count() == 0  # a KUKA shows the joints that turn
     assert page.evaluate(f"{CELL}.holes.selected") == 1
     page.get_by_test_id("replay-hole").select_option("2")  # its id is text, and harmless
     assert page.get_by_test_id("replay-verdict").inner_text() == "no motion"
@@ -205,6 +208,29 @@ def test_meshes_of_a_description_move_with_the_links(browser, robot, plan, tmp_p
     T = link_frames(robot, np.deg2rad(joints))[2]
     expected = corners[faces.ravel()] @ T[:3, :3].T + T[:3, 3]
     assert np.array(places) * 1e-3 == pytest.approx(expected, abs=1e-6)
+
+
+def test_joint_3_is_read_out_as_the_pendant_shows_it(browser, tool, tmp_path):
+    robot = read_robot("fanuc_lrmate200id")
+    T = forward(robot, np.deg2rad([10.0, 35.0, -20.0, 15.0, -60.0, 40.0])) @ tool.T_flange_tcp
+    hole = Hole("a", T[:3, 3], -T[:3, 2], 0.02, psi_zero=T[:3, 1])
+    found = evaluate(robot, tool, hole, Profile.straight(0.02, 0.0, 0.1, 0.2), 1)
+    answer = HolePlan(hole, "evaluated", wrist_offset(robot, tool), found.motion, found.score, None)
+    path = tmp_path / "fanuc.html"
+    path.write_text(replay_page(Plan(robot, tool, Settings(), (answer,))), encoding="utf-8")
+    page = browser.new_page(viewport={"width": 1000, "height": 700})
+    page.goto(path.as_uri())
+    page.get_by_test_id("replay-verdict").wait_for()
+    place(page, 0)
+    turned = page.evaluate(f"{CELL}.track.at(0).joints")
+    rows = page.get_by_test_id("cell-readout").locator("tbody tr").all()
+    shown = [float(row.locator("td").first.inner_text().replace("−", "-")) for row in rows]
+    note = page.get_by_test_id("cell-shown-note").inner_text()
+    page.close()
+    assert turned == pytest.approx(np.rad2deg(found.motion.joints[1]), abs=1e-3)
+    assert shown == pytest.approx(np.rad2deg(robot.shown(found.motion.joints[1])), abs=0.051)
+    assert abs(shown[2] - turned[2]) > 10
+    assert "against the ground (J3 less J2)" in note
 
 
 def test_without_webgl_it_says_so_and_the_rest_works(open_replay):

@@ -28,4 +28,6 @@ def robots(name: str | None = None, /, *, json: bool = False) -> int:
         terminal.print_lines(tables.robot_lines(found[0]))
     else:
         terminal.out().print(tables.robots_table(found))
+        if note := tables.robots_note(found):
+            terminal.out().print(note)
     return FINE

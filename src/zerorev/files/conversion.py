@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.robot_schema import DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
+from zerorev.files.robot_schema import BaseInRootForm, DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
 from zerorev.files.schema import CycleForm, HoleForm, SettingsForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
@@ -24,7 +25,7 @@ from zerorev.model.cycle import MOST_BACK, Cycle
 from zerorev.model.dynamics import Dynamics, Link, Load
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.profile import Profile
-from zerorev.model.robot import LENGTHS, ArmGeometry, JointLimits, Robot, six
+from zerorev.model.robot import LENGTHS, ArmGeometry, Display, JointLimits, Robot, Six, six
 from zerorev.model.settings import Settings
 from zerorev.model.stated import stated
 from zerorev.model.tool import Tool
@@ -55,8 +56,20 @@ def robot_from(form: RobotForm, **sources: Any) -> Robot:
     arm = noun_from(ArmGeometry, form.geometry_mm, LENGTHS, sign=six(joints.sign), offset=offset)
     limits = noun_from(JointLimits, joints)
     a, b, c, d, e, f = joints.names
-    words = form.manufacturer, form.model
-    return Robot(form.name, arm, limits, (a, b, c, d, e, f), *words, **sources, dynamics=_dynamics_from(form.dynamics))
+    return noun_from(
+        Robot,
+        form,
+        name=form.name,
+        arm=arm,
+        limits=limits,
+        joint_names=(a, b, c, d, e, f),
+        manufacturer=form.manufacturer,
+        model=form.model,
+        dynamics=_dynamics_from(form.dynamics),
+        display=noun_from(Display, form.display),
+        base_in_root=None if form.base_in_root is None else _six_from(form.base_in_root),
+        **sources,
+    )
 
 
 def _dynamics_from(form: DynamicsForm | None) -> Dynamics | None:
@@ -84,9 +97,25 @@ def robot_data(robot: Robot) -> dict[str, Any]:
             | {key: value for key, value in data_of(limits).items() if value is not None},
         }
         | ({} if robot.dynamics is None else {"dynamics": _dynamics_data(robot.dynamics)})
+        | _controller_data(robot)
     )
     words = {"name": robot.name, "manufacturer": robot.manufacturer, "model": robot.model}
     return words | numbers | {"sha256": _fingerprint(numbers)}
+
+
+def _controller_data(robot: Robot) -> dict[str, Any]:
+    """How the controller counts; a robot of which nothing is said has no key of it, as before these existed."""
+    data = {"display": data_of(robot.display)} if robot.display != Display() else {}
+    if robot.pulses_per_deg is not None:
+        data |= data_of(robot, ("pulses_per_deg",))
+    if robot.base_in_root is not None:
+        data["base_in_root"] = _six_data(robot.base_in_root)
+    return data
+
+
+def _six_data(frame: Sequence[float]) -> dict[str, Any]:
+    """A frame of x, y, z [m] and roll, pitch, yaw [rad] as a file holds it."""
+    return {"xyz_mm": plain(mm(np.array(frame[:3]))), "rpy_deg": plain(deg(np.array(frame[3:])))}
 
 
 def _dynamics_data(dynamics: Dynamics) -> dict[str, Any]:
@@ -156,9 +185,7 @@ def settings_from(form: SettingsForm, *, before: bool = False) -> Settings:
         Settings,
         form,
         before=before,
-        robroot=frame
-        if frame is None or isinstance(frame, str)
-        else (*_floats(m(frame.xyz_mm)), *_floats(rad(frame.rpy_deg))),
+        robroot=frame if frame is None or isinstance(frame, str) else _six_from(frame),
         external_axes=tuple(ExternalAxis(axis.name, axis.at) for axis in form.external_axes),
         calls=calls,
         header=tuple(form.header),
@@ -180,17 +207,16 @@ def _calls_from(place: str, texts: list[str]) -> tuple[Call, ...]:
         return tuple(Call.parse(text) for text in texts)
 
 
-def _floats(values: Array) -> tuple[float, ...]:
-    return tuple(float(value) for value in values)
+def _six_from(frame: FrameForm | BaseInRootForm) -> Six:
+    """x, y, z [m] and roll, pitch, yaw [rad]."""
+    return six([*m(frame.xyz_mm), *rad(frame.rpy_deg)])
 
 
 def settings_data(settings: Settings) -> dict[str, Any]:
     """The settings as a file of answers holds them."""
     frame, calls = settings.robroot, settings.calls
     return data_of(settings) | {
-        "robroot": {"xyz_mm": plain(mm(np.array(frame[:3]))), "rpy_deg": plain(deg(np.array(frame[3:])))}
-        if isinstance(frame, tuple)
-        else frame,
+        "robroot": _six_data(frame) if isinstance(frame, tuple) else frame,
         "external_axes": [{"name": axis.name, "at": plain(axis.at)} for axis in settings.external_axes],
         "calls": {each.name: [str(call) for call in getattr(calls, each.name)] for each in fields(calls)},
         "header": list(settings.header),

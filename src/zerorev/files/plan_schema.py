@@ -96,7 +96,10 @@ class GivenForm(Form):
 
 
 class JointsDegForm(Form):
-    """The joints along a motion: controller angles with turns."""
+    """The joints along a motion: controller angles with turns, of the joints that turn.
+
+    A controller that shows joint 3 less joint 2 (`display` of the robot, FANUC) shows another joint 3 than stands here.
+    """
 
     start: SixDeg = Field(description="six numbers [deg] at the start")
     target: SixDeg = Field(description="six numbers [deg] at the corner")

@@ -14,7 +14,7 @@ from zerorev.files.kuka_frames import KEYS, in_own_keys
 from zerorev.files.stated_forms import Form, Many, Words, keys_of
 from zerorev.files.values import AnglesDeg, Name, PlaceMm, SixDeg
 from zerorev.model.dynamics import Dynamics, Link, Load
-from zerorev.model.robot import LENGTHS, ArmGeometry, JointLimits
+from zerorev.model.robot import LENGTHS, ArmGeometry, Display, JointLimits, Robot
 
 __all__ = [
     "DynamicsForm", "FrameForm", "GivenFrameForm", "GivenToolForm", "RobotFile", "RobotForm", "ToolFile", "ToolForm",
@@ -55,7 +55,10 @@ class GeometryForm(Form):
 
 @keys_of(JointLimits)
 class JointsForm(Form):
-    """The joints as the controller shows them; model angle = sign * controller angle - offset."""
+    """The joints as the controller counts them, each against the link before it (`display`).
+
+    Model angle = sign * controller angle - offset.
+    """
 
     names: Annotated[list[Name], Field(min_length=6, max_length=6)] = Field(description="six names, e.g. A1 to A6")
     sign: Annotated[list[Annotated[int, Field(ge=-1, le=1)]], Field(min_length=6, max_length=6)] = Field(
@@ -83,6 +86,23 @@ class DynamicsForm(Form):
     )
 
 
+@keys_of(Display)
+class DisplayForm(Form):
+    """What the controller shows of the joints where that is not the joint that turns."""
+
+
+class BaseInRootForm(Form):
+    """The base frame from which the controller counts, in the base frame of the arm."""
+
+    xyz_mm: PlaceMm = Field(
+        default=[0.0, 0.0, 0.0], description="three numbers [mm]: the origin, from the height from which c1 is measured"
+    )
+    rpy_deg: AnglesDeg = Field(
+        default=[0.0, 0.0, 0.0], description="three numbers [deg]: roll, pitch, yaw; R = Rz(yaw) Ry(pitch) Rx(roll)"
+    )
+
+
+@keys_of(Robot, ("pulses_per_deg",))
 class RobotForm(Form):
     """The numbers of a robot."""
 
@@ -95,6 +115,15 @@ class RobotForm(Form):
     )
     dynamics: DynamicsForm | None = Field(
         default=None, description="a mapping of links, payload_kg, effort_limit_nm and source: what the arm weighs"
+    )
+    display: DisplayForm = Field(
+        default=DisplayForm(),
+        description="a mapping of j3_less_j2: what the controller shows in place of the joints that turn",
+    )
+    base_in_root: BaseInRootForm | None = Field(
+        default=None,
+        description="a mapping of xyz_mm and rpy_deg: the base frame from which the controller counts, in the base "
+        "frame of the arm; or null: they are one",
     )
 
 

@@ -19,7 +19,7 @@ def resized(
 ) -> tuple[Robot, Tool, Hole, Settings]:
     """Robot, tool, hole and settings at another size; every motion does the same to the joints.
 
-    Masses are left out: what they do depends on the size.
+    Masses are left out: what they do depends on the size. So is the controller's base, on which no motion depends.
 
     With a power of two as the factor no digit changes, so that an answer comes back exactly.
 
@@ -34,7 +34,12 @@ def resized(
     T[:3, 3] *= factor
     a1, a2, b, c1, c2, c3, c4 = (length * factor for length in arm[:7])
     return (
-        replace(robot, arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4), dynamics=None),
+        replace(
+            robot,
+            arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4),
+            dynamics=None,
+            base_in_root=None,
+        ),
         replace(tool, T_flange_tcp=T, load=None),
         replace(
             hole,

@@ -9,13 +9,13 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.model._arrays import Array, finite
+from zerorev.model._arrays import Array, finite, rotation_rpy, transform
 from zerorev.model.dynamics import Dynamics
-from zerorev.model.stated import Number, with_attributes
+from zerorev.model.stated import Number, Switch, with_attributes
 from zerorev.model.stated import Six as SixNumbers
 from zerorev.model.units import DEG, DEG_S, DEG_S2, MM
 
-__all__ = ["LENGTHS", "NIL_RATE", "ArmGeometry", "JointLimits", "Robot"]
+__all__ = ["LENGTHS", "NIL_RATE", "ArmGeometry", "Display", "JointLimits", "Robot"]
 
 MIDDLE_REACH = 0.7  # [m] of an arm of size 1
 NIL_RATE = float(np.deg2rad(1e-6))  # [rad/m] 1e-9 deg/mm, at this size
@@ -67,6 +67,19 @@ class JointLimits:
 
 
 @dataclass(frozen=True)
+class Display:
+    """What the controller shows of the joints where that is not the joint that turns."""
+
+    j3_less_j2: Annotated[
+        bool,
+        Switch(
+            "whether the controller shows joint 3 less joint 2, its angle against the ground (FANUC), and not what "
+            "joint 3 turns by against link 2"
+        ),
+    ] = False
+
+
+@dataclass(frozen=True)
 class Robot:
     """A six-axis robot of the ortho-parallel, spherical-wrist class.
 
@@ -81,6 +94,9 @@ class Robot:
         second_sources: what others say of them.
         caveats: what to know before trusting them.
         dynamics: what the links weigh, or None where that is not known.
+        display: what the controller shows of the joints. Limits, rates and reversals are of the joints that turn.
+        base_in_root: the base frame from which the controller counts, in the base frame of the arm: x, y, z [m] and
+            roll, pitch, yaw [rad]; None where they are one.
     """
 
     name: str
@@ -93,6 +109,43 @@ class Robot:
     second_sources: tuple[str, ...] = field(default=(), compare=False)
     caveats: tuple[str, ...] = field(default=(), compare=False)
     dynamics: Dynamics | None = None
+    display: Display = Display()
+    pulses_per_deg: Annotated[
+        Six | None,
+        SixNumbers(
+            "pulses of the controller for one degree of each joint that turns, with their signs; none of them 0",
+            none="not known",
+        ),
+    ] = None
+    base_in_root: Six | None = None
+
+    @property
+    def T_root_base(self) -> Array:
+        """The controller's base frame in the base frame of the arm, shape (4, 4), [m]."""
+        x, y, z, *rpy = self.base_in_root or (0.0,) * 6
+        return transform(rotation_rpy(*rpy), np.array([x, y, z]))
+
+    def shown(self, joints: Array) -> Array:
+        """What the controller shows of the joints, as a new array.
+
+        Args:
+            joints: that turn [rad], shape (..., 6).
+        """
+        shown = np.array(joints, dtype=np.float64)
+        if self.display.j3_less_j2:
+            shown[..., 2] -= shown[..., 1]
+        return shown
+
+    def from_shown(self, shown: Array) -> Array:
+        """The joints that turn, as a new array: the inverse of `shown`.
+
+        Args:
+            shown: what the controller shows of them [rad], shape (..., 6).
+        """
+        joints = np.array(shown, dtype=np.float64)
+        if self.display.j3_less_j2:
+            joints[..., 2] += joints[..., 1]
+        return joints
 
     def allowed(self, margin: float) -> JointLimits:
         """The joint limits with room kept at both ends; without any, the limits themselves.
@@ -157,6 +210,25 @@ class Robot:
         # plain floats throughout: an int would be another type, and another compilation, to the kernels
         a1, a2, b, c1, c2, c3, c4 = map(float, lengths)
         object.__setattr__(self, "arm", ArmGeometry(a1, a2, b, c1, c2, c3, c4, six(arm.sign), six(offset)))
+        self._check_controller()
+
+    def _check_controller(self) -> None:
+        """Check how the controller counts."""
+        if self.display.j3_less_j2 and self.arm.sign[1] == self.arm.sign[2]:
+            raise InputError(
+                "joints 2 and 3 have the same sign, so that joint 3 less joint 2 is not an angle against the ground",
+                where="display.j3_less_j2",
+                accepted="joints.sign of joint 2 other than that of joint 3, or false",
+            )
+        if self.pulses_per_deg is not None:
+            pulses = finite(self.pulses_per_deg, (6,), "pulses_per_deg")
+            for name, count in zip(self.joint_names, pulses, strict=True):
+                if count == 0:
+                    raise InputError(f"is 0 for {name}", where="pulses_per_deg", accepted="six numbers, none of them 0")
+            object.__setattr__(self, "pulses_per_deg", six(pulses))
+        if self.base_in_root is not None:
+            base = six(finite(self.base_in_root, (6,), "base_in_root"))
+            object.__setattr__(self, "base_in_root", base if any(base) else None)
 
 
 def six(values: Array | Sequence[float]) -> Six:
@@ -167,5 +239,5 @@ def six(values: Array | Sequence[float]) -> Six:
 
 LENGTHS = ArmGeometry._fields[:7]
 
-for _noun in (ArmGeometry, JointLimits):
+for _noun in (ArmGeometry, JointLimits, Display, Robot):
     _noun.__doc__ = with_attributes(_noun)

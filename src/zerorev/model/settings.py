@@ -26,6 +26,7 @@ SEQUENCE = "How the holes follow each other"
 PROGRAM = "How the program fits the controller"
 NO_CALLS = Calls()
 IN_ONE_GO = Cycle()
+AS_TURNED = "Each joint against the link before it: of a FANUC, J3 as its pendant shows it plus J2"
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
 
 
@@ -116,7 +117,12 @@ class Settings:
     reversal_weights: Annotated[tuple[float, ...], Six("what a reversal of each joint costs", above=0)] = (1.0,) * 6
     near_joints: Annotated[
         tuple[float, ...] | None,
-        Six("controller angles to which free turns are chosen nearest", DEG, none="the turns farthest from the limits"),
+        Six(
+            "controller angles to which free turns are chosen nearest",
+            DEG,
+            none="the turns farthest from the limits",
+            note=AS_TURNED,
+        ),
     ] = None
     limit_margin: Annotated[
         float,
@@ -312,7 +318,12 @@ class Settings:
     ] = 0.1
     home_joints: Annotated[
         tuple[float, ...] | None,
-        Six("controller angles where the job begins and ends", DEG, none="it begins and ends at its holes"),
+        Six(
+            "controller angles where the job begins and ends",
+            DEG,
+            none="it begins and ends at its holes",
+            note=AS_TURNED,
+        ),
     ] = None
     proof_boxes: Annotated[
         int,

@@ -18,6 +18,7 @@ from zerorev.motion.joint_path import joints_along, sample_distances
 from zerorev.report.figures import style
 from zerorev.report.figures.loads import CROSSED
 from zerorev.report.scene.joint_range import joint_range
+from zerorev.report.words.as_shown import turning_names
 
 __all__ = ["REVERSAL", "joint_angles", "path_distance"]
 
@@ -123,7 +124,15 @@ def _one_joint(axes: Axes, plan: Plan, profile: Profile, i: int, planned: Curve,
            np.rad2deg([plan.robot.limits.lower[i], plan.robot.limits.upper[i]]))  # fmt: skip
     axes.set_xlim(0, planned.distance[-1])
     _end_labels(axes, (planned.joints[-1, i], baseline.joints[-1, i]), style.JOINT_INKS[i])
-    axes.set_title(name, loc="left", size=11, weight="bold", color=style.JOINT_INKS[i], pad=4, parse_math=False)
+    axes.set_title(
+        turning_names(plan.robot)[i],
+        loc="left",
+        size=11,
+        weight="bold",
+        color=style.JOINT_INKS[i],
+        pad=4,
+        parse_math=False,
+    )
     axes.set_title(
         f"reversals {baseline.counted(i + 1)} → {planned.counted(i + 1)}",
         loc="right",

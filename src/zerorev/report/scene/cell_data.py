@@ -27,6 +27,7 @@ from zerorev.report.scene.motion_look import Mark, held, look, signed_distance
 from zerorev.report.scene.palette import BASELINE_COLOUR, CANNOT_RUN, JOINT_COLOURS, REVERSAL_COLOURS
 from zerorev.report.scene.skeleton import home
 from zerorev.report.scene.urdf_meshes import Mesh
+from zerorev.report.words.as_shown import shown_note
 
 __all__ = ["arm_data", "holes_data", "motion_data", "reversals_data", "slice_data", "track_data"]
 
@@ -59,6 +60,8 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
         "rings": [{"place": _mm(place), "radius": _mm(radius)} for place, radius in rings(robot)],
         "tip": _mm(tool.T_flange_tcp[:3, 3]),
         "home_deg": deg(home(robot)).tolist(),
+        "j3_less_j2": robot.display.j3_less_j2,
+        "shown_note": shown_note(robot),
         "reach_mm": float(mm(robot.reach)),
         "colours": {
             "joints": JOINT_COLOURS, "reversals": REVERSAL_COLOURS, "cannot": CANNOT_RUN, "baseline": BASELINE_COLOUR,

@@ -16,6 +16,7 @@ from zerorev.model.robot import JointLimits, Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, evaluated, event_distance, meets_threshold, steady_rates
 from zerorev.motion.joint_path import JUMP, JointPath, joint_path
+from zerorev.report.words.as_shown import turning_names
 
 __all__ = ["Curves", "Fault", "Look", "Mark", "curves", "held", "look", "signed_distance"]
 
@@ -93,7 +94,7 @@ class Curves:
         joints: controller angles with turns [rad], shape (N, 6); NaN where out of reach.
         baseline: the same at the spin of the start, or None where that cannot be run.
         limits: of the robot.
-        names: of the joints.
+        names: of the joints that turn.
     """
 
     distance: Array
@@ -140,7 +141,7 @@ def curves(drilling: Drilling, profile: Profile, branch: int, settings: Settings
     still = joint_path(drilling, held(profile), branch, near=near, samples=samples)
     return Curves(
         signed_distance(profile, path.distance), path.joints, still.joints if still.runs else None, robot.limits,
-        robot.joint_names,
+        turning_names(robot),
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from zerorev.files.units import deg, mm
 from zerorev.model.finding import Finding, Level
 from zerorev.model.plan import HolePlan, Plan, Transition, named_holes
 from zerorev.report.words.answer import how_deep, minutes
+from zerorev.report.words.as_shown import controller_rows
 from zerorev.report.words.hole_rows import part_data, standing
 from zerorev.report.words.lost_motion import PREDICTED, lost_motion_cell
 from zerorev.report.words.tables import (
@@ -179,7 +180,7 @@ def job_facts(plan: Plan) -> list[Fact]:
 
 
 def robot_facts(plan: Plan) -> list[Fact]:
-    """The robot: names, reach and limits."""
+    """The robot: names, reach and limits, and how its controller counts."""
     robot = plan.robot
     limits = np.rad2deg(np.array([robot.limits.lower, robot.limits.upper])).T
     ranges = [f"{name} {low:g} to {high:g}" for name, (low, high) in zip(robot.joint_names, limits, strict=True)]
@@ -188,6 +189,7 @@ def robot_facts(plan: Plan) -> list[Fact]:
         Fact("maker and model", f"{robot.manufacturer} {robot.model}".strip() or "–"),
         Fact("reach of the wrist", f"{wrist_reach(robot) * 1e3:.0f} mm"),
         Fact("joint limits [deg]", "; ".join(ranges)),
+        *(Fact(name, text) for name, text in controller_rows(robot)),
     ]
 
 

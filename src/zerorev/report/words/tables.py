@@ -16,6 +16,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Score, named_holes
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.report.words.as_shown import controller_rows, turning_note
 from zerorev.report.words.lost_motion import HEADING, lost_motion_cell
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "robot_lines",
     "robot_sheet",
     "robot_table",
+    "robots_note",
     "robots_table",
     "slowest",
     "spins_cell",
@@ -177,6 +179,15 @@ def robots_table(robots: Iterable[Robot]) -> Table:
     return table
 
 
+def robots_note(robots: Iterable[Robot]) -> Text | None:
+    """What stands under the table of robots: of which the controller does not show the joints that turn."""
+    notes: dict[str, list[str]] = {}
+    for robot in robots:
+        notes.setdefault(turning_note(robot), []).append(robot.name)
+    lines = [f"{', '.join(names)}: {note}" for note, names in notes.items() if note]
+    return Text("\n".join(lines), style="dim") if lines else None
+
+
 def wrist_reach(robot: Robot) -> float:
     """Greatest distance [m] of the wrist centre from axis 1: the arm stretched out at the height of the shoulder."""
     arm = robot.arm
@@ -194,13 +205,14 @@ def robot_sheet(robot: Robot) -> dict[str, Any]:
 
 
 def robot_heading(robot: Robot) -> Text:
-    """Name, maker and model, and the lengths of the arm."""
+    """Name, maker and model, the lengths of the arm, and how its controller counts."""
     lengths = "  ".join(
         f"{name} {_plain(getattr(robot.arm, name) * 1e3)}" for name in ("a1", "a2", "b", "c1", "c2", "c3", "c4")
     )
     return Text.assemble(
         (robot.name, "bold"), f"   {robot.manufacturer} {robot.model}\n\n", ("lengths [mm]   ", "bold"), lengths,
         ("\nwrist reach    ", "bold"), f"{wrist_reach(robot) * 1e3:.0f} mm from axis 1",
+        *(part for name, text in controller_rows(robot) for part in ((f"\n{name:<15}", "bold"), text)),
     )  # fmt: skip
 
 
@@ -220,7 +232,7 @@ def robot_table(robot: Robot) -> Table:
 def robot_lines(robot: Robot) -> list[Text]:
     """Where each group of numbers comes from, what else was compared, and what to beware of."""
     lines = [Text("where the numbers come from", style="bold")]
-    lines += [Text(f"  {group:<12} {source}") for group, source in robot.sources.items()]
+    lines += [Text(f"  {group:<14} {source}") for group, source in robot.sources.items()]
     for heading, entries in (("compared with", robot.second_sources), ("beware", robot.caveats)):
         if entries:
             lines += [Text(""), Text(heading, style="bold"), *(Text(f"  - {entry}") for entry in entries)]

@@ -113,22 +113,25 @@ export class Readout {
     const line = (name, text, unit) => element("div", { class: "zrc-figure" }, element("span", {}, name), element("b", {}, text), element("span", {}, unit));
     const rows = arm.names.map((name, i) => {
       const cells = [element("th", { scope: "row" }, element("i", { class: "zrc-dot", style: `background:${arm.colours.joints[i]}` }), name),
-        ...angle(pose, now, i)];
-      if (otherPose) cells.push(...angle(otherPose, otherNow, i, "zrc-muted"));
+        ...angle(pose, now, i, arm)];
+      if (otherPose) cells.push(...angle(otherPose, otherNow, i, arm, "zrc-muted"));
       return element("tr", {}, ...cells);
     });
     const head = element("tr", {}, element("th"), element("th", { colspan: 2 }, otherPose ? "planned" : "[deg]"));
     if (otherPose) head.append(element("th", { colspan: 2 }, "constant"));
     this.root.replaceChildren(line("stand-off", pose.standoff.toFixed(1), "mm"), line("spin", signed(pose.psi, 1), "deg"),
       element("table", {}, element("thead", {}, head), element("tbody", {}, ...rows)));
+    if (arm.shown_note) this.root.append(element("p", { class: "zrc-muted", "data-testid": "cell-shown-note" }, `${arm.shown_note}.`));
     if (track.lost(x)) this.root.append(element("p", { class: "zrc-bad" }, track.why));
   }
 }
 
-function angle(pose, now, i, more = "") {
+// the angle of a joint as the controller shows it, and which way the joint turns
+function angle(pose, now, i, arm, more = "") {
+  const shown = arm.j3_less_j2 && i === 2 ? pose.joints[2] - pose.joints[1] : pose.joints[i];
   const turns = now.some((mark) => mark.joint === i + 1);
   const way = turns ? ["⇄", "reverses"] : [["−", "turns −"], ["·", "stands still"], ["+", "turns +"]][pose.ways[i] + 1];
-  return [element("td", { class: more }, signed(pose.joints[i], 1)),
+  return [element("td", { class: more }, signed(shown, 1)),
     element("td", { class: `zrc-way ${turns ? "zrc-bad" : more}`, title: way[1], "aria-label": way[1] }, way[0])];
 }
 
