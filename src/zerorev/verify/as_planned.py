@@ -185,10 +185,15 @@ def _half_a_unit(number: Decimal) -> float:
 
 
 def _world(plan: Plan) -> Array:
-    """The robot's base in the frame from which $BASE counts, shape (4, 4), translation [m]."""
-    if not isinstance(plan.settings.robroot, tuple):
-        return np.eye(4)
-    x, y, z, roll, pitch, yaw = plan.settings.robroot
+    """The arm's base in the frame from which the part frame of a program counts, shape (4, 4), translation [m]."""
+    from_base = np.linalg.inv(_placed(plan.robot.base_in_root))
+    root = plan.settings.robroot
+    return np.asarray((_placed(root) if isinstance(root, tuple) else np.eye(4)) @ from_base)
+
+
+def _placed(frame: tuple[float, ...] | None) -> Array:
+    """x, y, z [m], roll, pitch, yaw [rad] as a transform; None: none."""
+    x, y, z, roll, pitch, yaw = frame or (0.0,) * 6
     return transform(rotation_rpy(roll, pitch, yaw), np.array([x, y, z]))
 
 

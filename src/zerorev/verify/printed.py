@@ -33,7 +33,10 @@ def frame_of(printed: WrittenFrame) -> Array:
 def joints_of(robot: Robot, printed: WrittenJoints) -> Array:
     """Controller angles [rad], shape (6,)."""
     values = _floats(printed.values)
-    return values if printed.unit == "rad" else np.deg2rad(values)
+    shown = values if printed.unit == "rad" else np.deg2rad(values)
+    if robot.display.j3_less_j2:
+        shown[2] += shown[1]
+    return shown
 
 
 def length_slack(robot: Robot, printed: WrittenFrame | WrittenJoints) -> float:

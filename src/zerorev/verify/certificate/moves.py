@@ -80,7 +80,8 @@ class _Points:
         if program.base is None:
             self.part, self.base = vector(plan.T_base_part[:3, 3]), columns(plan.T_base_part[:3, :3])
         else:
-            self.part, self.base = _seen_from(root if isinstance(root, tuple) else None, *_frame(program.base))
+            part = _seen_from(root if isinstance(root, tuple) else None, *_frame(program.base))
+            self.part, self.base = _from_the_controllers_base(plan.robot.base_in_root, *part)
         self.wrist = combined((self.tip_in_flange, arb(-1)), ((arb(0), arb(0), arb(-plan.robot.arm.c4)), arb(1)))
 
     def pose(self, end: WrittenFrame | WrittenJoints) -> tuple[Vector, Axes]:
@@ -148,9 +149,10 @@ def _joints(robot: Robot, end: WrittenFrame | WrittenJoints) -> tuple[arb, ...] 
     """Controller angles [rad]; None of a pose."""
     if isinstance(end, WrittenFrame):
         return None
-    if end.unit == "rad":
-        return tuple(arb(str(value)) for value in end.values)
-    return tuple(_rad(value) for value in end.values)
+    shown = [arb(str(value)) if end.unit == "rad" else _rad(value) for value in end.values]
+    if robot.display.j3_less_j2:
+        shown[2] = shown[2] + shown[1]
+    return tuple(shown)
 
 
 def _seen_from(robroot: tuple[float, ...] | None, origin: Vector, axes: Axes) -> tuple[Vector, Axes]:
@@ -165,6 +167,18 @@ def _seen_from(robroot: tuple[float, ...] | None, origin: Vector, axes: Axes) ->
 
     x, y, z = (seen(axis) for axis in axes)
     return seen(combined((origin, arb(1)), (place, arb(-1)))), (x, y, z)
+
+
+def _from_the_controllers_base(
+    base_in_root: tuple[float, ...] | None, origin: Vector, axes: Axes
+) -> tuple[Vector, Axes]:
+    """A frame that is counted from the controller's base, as it is seen from that of the arm."""
+    if base_in_root is None:
+        return origin, axes
+    place = vector(np.array(base_in_root[:3]))
+    turn = _axes(*(arb(angle).sin_cos() for angle in base_in_root[:2:-1]))
+    x, y, z = (onto(turn, axis) for axis in axes)
+    return combined((place, arb(1)), (onto(turn, origin), arb(1))), (x, y, z)
 
 
 def _metre(length_mm: Decimal | None) -> arb:
