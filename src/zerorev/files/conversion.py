@@ -8,14 +8,14 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.robot_schema import BaseInRootForm, DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
-from zerorev.files.schema import CycleForm, HoleForm, SettingsForm
+from zerorev.files.schema import CycleForm, HoleForm, JobFile, SettingsForm
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
@@ -42,6 +42,7 @@ __all__ = [
     "settings_from",
     "tool_data",
     "tool_from",
+    "with_feeds",
 ]
 
 # from a tool frame with X along the plunge to one with Z against it: a turn by -90 deg about Y
@@ -191,6 +192,27 @@ def settings_from(form: SettingsForm, *, before: bool = False) -> Settings:
         header=tuple(form.header),
         cycle=cycle_from(form.cycle),
     )
+
+
+def with_feeds(form: JobFile, settings: Settings) -> Settings:
+    """The settings of a job with the feeds that it states in another unit.
+
+    Raises:
+        InputError: a feed that is stated twice, or one for each turn of a spindle whose speed is not known.
+    """
+    beside = sorted({"feed_mm_s", "feed_mm_rev"} & form.model_fields_set)
+    if form.feed_mm_min is not None and beside:
+        raise InputError(f"stands beside {beside[0]}", where="feed_mm_min", accepted="one of them")
+    if form.feed_mm_min is not None:
+        plunge, retract = form.feed_mm_min.plunge / 60e3, form.feed_mm_min.retract / 60e3
+        return replace(settings, feed_plunge=plunge, feed_retract=retract)
+    if form.feed_mm_rev is None:
+        return settings
+    if settings.spindle_rpm is None:
+        raise InputError("the speed of the spindle is not given", where="feed_mm_rev", accepted="spindle_rpm beside it")
+    if "plunge" in getattr(form, "feed_mm_s").model_fields_set:  # noqa: B009  # a key that is made of Settings
+        raise InputError("stands beside feed_mm_s.plunge", where="feed_mm_rev", accepted="one of them")
+    return replace(settings, feed_plunge=form.feed_mm_rev * settings.spindle_rpm / 60e3)
 
 
 def cycle_from(form: CycleForm) -> Cycle:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from zerorev.errors import InputError
-from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from
+from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from, with_feeds
 from zerorev.files.hole_list import all_of, given_of, in_base_frame, read_hole_list, text_of_list
 from zerorev.files.hole_meaning import as_in_a_job, meaning_of
 from zerorev.files.named import named_document, shipped
@@ -224,7 +224,7 @@ def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bo
     with inside(document.where(("tool",))):
         tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
     with inside(document.file):
-        settings, T_base_part = settings_from(form), frame_from(form.part_frame)
+        settings, T_base_part = with_feeds(form, settings_from(form)), frame_from(form.part_frame)
     notes: tuple[str, ...] = ()
     if isinstance(form.holes, str):
         holes, notes = _table(form, document, folder, tool, T_base_part, depth_needed=depth_needed)

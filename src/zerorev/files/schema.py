@@ -164,6 +164,13 @@ class ColumnsForm(Form):
     group: Name | None = Field(default=None, description="text: the column of the groups")
 
 
+class FeedMmMinForm(Form):
+    """Feeds of the tip."""
+
+    plunge: Annotated[Length, Field(gt=0)] = Field(description="a number above 0 [mm/min]: feed of the plunge")
+    retract: Annotated[Length, Field(gt=0)] = Field(description="a number above 0 [mm/min]: feed of the retract")
+
+
 class JobFile(SettingsForm):
     """A job file, YAML: a robot, a tool, holes, and how they are to be drilled."""
 
@@ -212,6 +219,14 @@ class JobFile(SettingsForm):
     )
     breakthrough_mm: Annotated[Length, Field(ge=0)] = Field(
         default=0.0, description="a number, 0 or more [mm]: how far the tip runs beyond the bottom of each hole"
+    )
+    feed_mm_rev: Annotated[Length, Field(gt=0)] | None = Field(
+        default=None,
+        description="a number above 0 [mm]: feed of the plunge for each turn of the spindle, in place of "
+        "feed_mm_s.plunge; spindle_rpm beside it",
+    )
+    feed_mm_min: FeedMmMinForm | None = Field(
+        default=None, description="a mapping of plunge and retract [mm/min], in place of feed_mm_s"
     )
     columns: ColumnsForm | None = Field(
         default=None,

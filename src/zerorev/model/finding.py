@@ -24,6 +24,7 @@ FindingKind = Literal[
     "controller",
     "corner",
     "corner_not_deepened",
+    "countersink",
     "deepest",
     "depth",
     "duplicate",

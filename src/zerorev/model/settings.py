@@ -28,6 +28,8 @@ NO_CALLS = Calls()
 IN_ONE_GO = Cycle()
 AS_TURNED = "Each joint against the link before it: of a FANUC, J3 as its pendant shows it plus J2"
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
+LAST = Nest("breakthrough", "The last millimetres of the way in, where the drill comes out at the back.")
+SINK = Nest("countersink", "What the drill leaves at the mouth of the hole.")
 
 
 @dataclass(frozen=True)
@@ -268,6 +270,47 @@ class Settings:
     ] = False
     feed_plunge: Annotated[float, Number("feed of the plunge", MM_S, nest=FEED, key="plunge", above=0)] = 5e-3
     feed_retract: Annotated[float, Number("feed of the retract", MM_S, nest=FEED, key="retract", above=0)] = 20e-3
+    breakthrough_length: Annotated[
+        float,
+        Number(
+            "how much of the way in has a feed of its own",
+            MM,
+            nest=LAST,
+            key="last_mm",
+            least=0,
+            note="Counted from the target; at a corner that is placed deeper, that much more",
+            label="last of the way in",
+        ),
+    ] = 0.0
+    breakthrough_feed: Annotated[
+        float | None,
+        Number(
+            "its feed",
+            MM_S,
+            nest=LAST,
+            key="feed_mm_s",
+            none="that of the plunge",
+            above=0,
+            label="its feed",
+        ),
+    ] = None
+    sink_diameter: Annotated[
+        float | None,
+        Number(
+            "diameter of the countersink",
+            MM,
+            nest=SINK,
+            key="diameter_mm",
+            none="none",
+            above=0,
+            note="It is as wide as the drill is deep, so that it takes a measured depth",
+            label="countersink",
+        ),
+    ] = None
+    sink_angle: Annotated[
+        float,
+        Number("its full angle", DEG, nest=SINK, key="angle_deg", least=10, to=170, label="its angle"),
+    ] = math.radians(100.0)
     spindle_rpm: Annotated[
         float | None,
         Number(
@@ -419,6 +462,15 @@ class Settings:
     def turning(self) -> Turning:
         """How the motion turns round at the corner, and how much of the depth is lost to it."""
         return turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
+
+    def feed_inwards(self, standoff: float) -> float:
+        """Feed of a move towards the target [m/s].
+
+        Args:
+            standoff: at which it begins [m].
+        """
+        last = standoff <= self.breakthrough_length * (1 + 1e-9)
+        return self.breakthrough_feed if last and self.breakthrough_feed is not None else self.feed_plunge
 
     @property
     def blend_share(self) -> float:

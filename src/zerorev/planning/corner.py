@@ -14,7 +14,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_corner import joint_corner, off_axis_and_tilt
 from zerorev.motion.joint_path import joints_along
 
-__all__ = ["MOST_TILT", "corner_findings", "corner_of"]
+__all__ = ["MOST_TILT", "corner_findings", "corner_of", "countersink_findings"]
 
 CLOSE = 9  # samples from one end of a joint move to the other
 MOST_TILT = float(np.deg2rad(0.01))  # of the tool against the drill axis on joint moves
@@ -85,3 +85,25 @@ def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]
         f"{np.rad2deg(MOST_TILT):g} deg of the drill axis: all joints rest there (corner_tolerance_mm)"
     )
     return (Finding("warning", "corner", message, answer.hole.id),)
+
+
+def countersink_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
+    """What a depth that is not known at the corner does to a countersink.
+
+    Args:
+        settings: with the countersink.
+        answer: with its corner.
+    """
+    corner = answer.corner
+    if settings.sink_diameter is None or corner is None or corner.interval[0] == corner.interval[1]:
+        return ()
+    wide = 2 * np.tan(settings.sink_angle / 2)
+    least, most = (wide * each * 1e3 for each in corner.interval)
+    lost = f"{corner.interval[0] * 1e3:g} to {corner.interval[1] * 1e3:g} mm"
+    angle, diameter = np.rad2deg(settings.sink_angle), settings.sink_diameter * 1e3
+    message = (
+        f"the tip turns back {lost} short of the corner, so a countersink of {angle:g} deg comes out {least:.2g} to "
+        f"{most:.2g} mm narrower than the {diameter:g} mm that a known depth gives: measure the depth lost "
+        "(blend_shortfall_mm), or use a depth stop"
+    )
+    return (Finding("warning", "countersink", message, answer.hole.id),)

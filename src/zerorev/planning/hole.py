@@ -24,7 +24,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.motion.loads import lost_motion_of
-from zerorev.planning.corner import corner_findings, corner_of
+from zerorev.planning.corner import corner_findings, corner_of, countersink_findings
 from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
@@ -238,10 +238,13 @@ def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
         motion: of the hole.
     """
     profile, way = motion.profile, Way.of(drilling, motion, settings)
-    inwards = way.lead_in.length + float(profile.distance[profile.corner])
+    slow = min(settings.breakthrough_length - float(profile.standoff.min()), float(profile.standoff[0]))
+    slow = slow if settings.breakthrough_length > 0 and settings.breakthrough_feed is not None else 0.0
+    inwards = way.lead_in.length + float(profile.distance[profile.corner]) - slow
     outwards = float(profile.distance[-1] - profile.distance[profile.corner])
     in_the_air = way.approach.length + way.retract.length
-    return inwards / settings.feed_plunge + (outwards + in_the_air) / settings.feed_retract
+    last = slow / settings.feed_inwards(0.0)
+    return inwards / settings.feed_plunge + last + (outwards + in_the_air) / settings.feed_retract
 
 
 def _evaluated(drilling: Drilling, settings: Settings, profile: Profile) -> HolePlan:
@@ -301,6 +304,7 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     found += hole_turn(answer, way.lead_in)
     found += load_findings(drilling, settings, answer)
     found += corner_findings(settings, answer)
+    found += countersink_findings(settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)
 

@@ -246,7 +246,9 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
     motion, settings = hole.motion, plan.settings
     assert motion is not None
     lead_in, approach, retract = stop.way.lead_in, stop.way.approach, stop.way.retract
-    points, corner = waypoints(motion.profile, lead_in.length, hole.corner.reach if hole.corner else 0.0)
+    reach = hole.corner.reach if hole.corner else 0.0
+    last = settings.breakthrough_length if settings.breakthrough_feed is not None else 0.0
+    points, corner = waypoints(motion.profile, lead_in.length, reach, last)
     points = with_blends(points, corner, settings, stop=hole.corner is not None and hole.corner.kind == "stop")
     if approach.length > 0:
         ahead = replace(points[0], standoff=points[0].standoff + approach.length)
@@ -265,7 +267,7 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         Move(
             end,
             abs(point.standoff - before.standoff),
-            settings.feed_plunge if point.leg in ("lead-in", "plunge") else settings.feed_retract,
+            _feed(settings, before, point),
             point.blend,
             point.leg,
             point.comment,
@@ -284,6 +286,12 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         corner=corner - 1,
         reversals_per_joint=hole.score.reversals_per_joint if hole.score else (0,) * 6,
     )
+
+
+def _feed(settings: Settings, before: Waypoint, point: Waypoint) -> float:
+    """Of the move from one point to the next [m/s]."""
+    inwards = point.leg in ("lead-in", "plunge")
+    return settings.feed_inwards(max(before.standoff, point.standoff)) if inwards else settings.feed_retract
 
 
 def _joints(drilling: Drilling, branch: int, points: Sequence[Waypoint], first: Array) -> Array:

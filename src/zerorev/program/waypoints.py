@@ -40,7 +40,9 @@ class Waypoint:
     linear: bool = True
 
 
-def waypoints(profile: Profile, lead_in: float, reach: float = 0.0) -> tuple[tuple[Waypoint, ...], int]:
+def waypoints(
+    profile: Profile, lead_in: float, reach: float = 0.0, last: float = 0.0
+) -> tuple[tuple[Waypoint, ...], int]:
     """The points of a motion, the lead-in before it, and the index of the corner among them.
 
     Each segment is split into equal moves that turn the tool by `GREATEST_TURN` at most.
@@ -49,6 +51,7 @@ def waypoints(profile: Profile, lead_in: float, reach: float = 0.0) -> tuple[tup
         profile: of the motion.
         lead_in: its length [m].
         reach: how far from the corner joint moves begin and end [m]; 0: there are none.
+        last: of the way in, has a feed of its own [m].
     """
     start = Waypoint(float(profile.standoff[0]), float(profile.psi[0]), "lead-in", "start of the stroke")
     points = [start]
@@ -61,7 +64,12 @@ def waypoints(profile: Profile, lead_in: float, reach: float = 0.0) -> tuple[tup
     for k in range(1, len(profile.standoff)):
         leg: Leg = "plunge" if k <= profile.corner else "retract"
         end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, _said_of(profile, k))
-        points.extend(_joint_moves(points[-1], end, k - 1 in profile.turns, k in profile.turns, reach))
+        from_turn, to_turn = k - 1 in profile.turns, k in profile.turns
+        if k <= profile.corner and points[-1].standoff > last > end.standoff + reach * to_turn:
+            slower = replace(_on_the_way(points[-1], end, points[-1].standoff - last), comment="the last of the way in")
+            points.extend(_joint_moves(points[-1], slower, from_turn, False, reach))
+            from_turn = False
+        points.extend(_joint_moves(points[-1], end, from_turn, to_turn, reach))
         if k == profile.corner:
             corner = len(points) - 1
     return tuple(points), corner

@@ -21,6 +21,7 @@ from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slac
 
 __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
+PLACE = 1e-5  # [m]: on which side of a place a move lies
 FEED = 1e-6  # [m/s]: six decimals
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
 NUMBERED = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
@@ -167,8 +168,12 @@ def _blends_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array, a
 
 def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) -> Iterator[str]:
     """Feeds must be the job's; of a move that has a time, what comes of that."""
+    settings = plan.settings
     for k, move in enumerate(written.moves):
-        feed = plan.settings.feed_plunge if at.first <= k < at.corner else plan.settings.feed_retract
+        feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
+        outer = max(float(at.standoff[k]), float(at.standoff[k + 1]))
+        if at.first <= k < at.corner and settings.breakthrough_feed is not None:
+            feed = settings.breakthrough_feed if outer <= settings.breakthrough_length + PLACE else feed
         value, unit = move.pace
         if unit == "%":
             continue  # of what the joints can: compared with what `export` writes
