@@ -44,8 +44,8 @@ def check(
         plan: The plan file (JSON).
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
-        program: With --certify: prove this program (KRL: .src), exported from the plan, instead: the rounded numbers
-            that stand in it, lead-in and all. The plan file is left as it is.
+        program: With --certify: prove this program (KRL: .src, TP: .ls), exported from the plan, instead: the rounded
+            numbers that stand in it, lead-in and all. The plan file is left as it is.
         tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
             be certified, and write it into the plan file.
         tolerance_mm: With --certify: certify each hole for every part frame whose origin is at most so far [mm] off the
@@ -92,13 +92,14 @@ def check(
         remember(text)
     if program is not None:
         from zerorev.program.as_exported import as_exported
-        from zerorev.program.notes import calls
+        from zerorev.program.notes import calls, only_numbered
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
             drilled = as_exported(checked.plan, written, dialect, program.stem)
             proven = certify_program(checked.plan, written, drilled)
-            checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *calls(proven.settings))))
+            unexamined = (*calls(proven.settings), *only_numbered(written))
+            checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *unexamined)))
     elif certify:
         with terminal.busy("proving"):
             checked = replace(checked, plan=asked.certified(checked.plan))
@@ -111,7 +112,7 @@ def check(
 
         said = write_report(answer, report, plan.name)
     if json and program is not None:
-        terminal.print_json(_proofs(plan_to_json(answer), written.name))
+        terminal.print_json(_proofs(plan_to_json(answer), written.name, [each.message for each in unexamined]))
     elif json:
         terminal.print_json(plan_to_json(answer) | proofs.as_json(found))
     else:
@@ -138,11 +139,10 @@ def _verdict(answer: Plan, *, certify: bool = False) -> int:
     return FINE if shown.sound and (shown.certified or not certify) else FOUND
 
 
-def _proofs(plan: dict[str, Any], program: str) -> dict[str, Any]:
+def _proofs(plan: dict[str, Any], program: str, unexamined: list[str]) -> dict[str, Any]:
     """What is proven of a program's holes, without the plan around it: in a plan file it would pass for the plan's."""
     holes = [{key: hole[key] for key in ("id", "verified", "certificate")} for hole in plan["holes"]]
-    calls = [finding["message"] for finding in plan["findings"] if finding["kind"] == "calls"]
-    return {"format": "zerorev.program_certificate/1", "program": program, "not_examined": calls, "holes": holes}
+    return {"format": "zerorev.program_certificate/1", "program": program, "not_examined": unexamined, "holes": holes}
 
 
 def _show_plan(answer: Plan) -> None:

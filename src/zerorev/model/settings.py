@@ -388,7 +388,8 @@ class Settings:
             none="the program sets none",
             least=1,
             to=16,
-            note="`$ACT_TOOL`, and `$LOAD` by the mass of the tool, or of that number where that is not known",
+            note="KRL: `$ACT_TOOL`, and `$LOAD` by the mass of the tool, or of that number where that is not known. "
+            "TP: `UTOOL_NUM`, which it needs; what must stand there is said in its comments",
             group=PROGRAM,
             label="tool number",
         ),
@@ -400,7 +401,7 @@ class Settings:
             none="the program sets none",
             least=1,
             to=32,
-            note="`$ACT_BASE`",
+            note="KRL: `$ACT_BASE`. TP: `UFRAME_NUM`, in place of the world frame",
             label="base number",
         ),
     ] = None

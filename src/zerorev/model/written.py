@@ -49,11 +49,11 @@ class Pace(NamedTuple):
 
     Attributes:
         value: as printed.
-        unit: of the tip [m/s], or the time of the whole move [s], or a share of what the joints can [%].
+        unit: of the tip [m/s] or [cm/min], or the time of the whole move [s], or a share of what the joints can [%].
     """
 
     value: Decimal
-    unit: Literal["m/s", "s", "%"] = "m/s"
+    unit: Literal["m/s", "cm/min", "s", "%"] = "m/s"
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding, FindingKind, Level
 from zerorev.model.job import Settings
+from zerorev.model.written import WrittenProgram
 from zerorev.program.neutral import HoleProgram, Move, Program
 
-__all__ = ["CornerDepth", "calls", "corner_depth", "notes", "segments", "tool_turn", "turn_speed"]
+__all__ = ["CornerDepth", "calls", "corner_depth", "notes", "only_numbered", "segments", "tool_turn", "turn_speed"]
 
 NOTICEABLE = 1e-6  # [m] a depth below this is not worth a word
 TWO_CYCLES = 24e-3  # [s]: a controller interpolates every 12 ms, or faster
@@ -88,7 +89,7 @@ def _blend(program: Program) -> tuple[Finding, ...]:
     clipped = [
         f"the blend at the corner is {depth.blend * 1e3:.2f} mm instead of {wanted * 1e3:g} mm: half the shorter of "
         "the two moves that meet there"
-        if depth.blend < wanted - NOTICEABLE
+        if depth.blend < wanted - NOTICEABLE and program.settings.turning.kind == "blend"
         else ""
         for depth in depths
     ]
@@ -178,6 +179,22 @@ def calls(settings: Settings) -> tuple[Finding, ...]:
     places = [f"{', '.join(map(str, called))} {place}" for place, called in settings.calls.places()]
     message = f"calls {'; '.join(places)}: what these programs do is not examined"
     return (Finding("info", "calls", message),) if places else ()
+
+
+def only_numbered(program: WrittenProgram) -> tuple[Finding, ...]:
+    """Of which frames a program has but the number: what stands under it on the controller nobody here knows.
+
+    Args:
+        program: as read back.
+    """
+    names = [name for name, frame in (("tool", program.tool), ("part frame", program.base)) if frame is None]
+    if not names:
+        return ()
+    message = (
+        f"the program has the {' and the '.join(names)} by number alone: what is said of it holds where the plan's "
+        "values stand there on the controller, which is not examined"
+    )
+    return (Finding("info", "controller", message),)
 
 
 def _unchecked(program: Program) -> tuple[Finding, ...]:

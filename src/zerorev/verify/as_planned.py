@@ -23,6 +23,7 @@ __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
 PLACE = 1e-5  # [m]: on which side of a place a move lies
 FEED = 1e-6  # [m/s]: six decimals
+TIP = {"m/s": 1.0, "cm/min": 1e-2 / 60}  # [m/s]: units in which the speed of the tip is given
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
 NUMBERED = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
 """The tool frame of a program that has only its number, Z along the plunge, in the tcp frame."""
@@ -86,7 +87,8 @@ def frames_as_planned(plan: Plan, program: WrittenProgram) -> Iterator[str]:
         off, turned = _apart((plan.tool.T_flange_tcp @ _axes(plan, printed))[None], printed[None])
         if off[0] > length_slack(plan.robot, program.tool) or turned[0] > angle_slack(plan.robot, program.tool):
             yield f"the tool frame of the program is {_mm(off[0])} and {_deg(turned[0])} off the plan's"
-    if program.base is not None:
+    # points that are given from the controller's own base are held to the plan one by one
+    if program.base is not None and any((*program.base.xyz_mm, *program.base.turn)):
         off, turned = _apart((_world(plan) @ plan.T_base_part)[None], frame_of(program.base)[None])
         if off[0] > length_slack(plan.robot, program.base) or turned[0] > angle_slack(plan.robot, program.base):
             yield f"the part frame of the program is {_mm(off[0])} and {_deg(turned[0])} off the plan's"
@@ -122,6 +124,8 @@ def moves_as_planned(
         yield f"the points do not lead in to one deepest point and out again as planned{place}"
         return
 
+    # what the digits of points before it add up to is not held against a point: its stand-off says where it lies
+    distance += np.sign(np.concatenate([steps[:1], steps])) * (at.standoff - planned)
     turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
     psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
     off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
@@ -177,10 +181,15 @@ def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) ->
         value, unit = move.pace
         if unit == "%":
             continue  # of what the joints can: compared with what `export` writes
-        found = float(value) if unit == "m/s" else abs(float(steps[k])) / float(value) if value > 0 else np.inf
-        # of a time, the digits of its last place, and of both ends
-        off = _half_a_unit(value) if unit == "m/s" else found * _half_a_unit(value) / max(float(value), 1e-9)
-        slack = FEED + off + (0.0 if unit == "m/s" else 2e-6 / max(float(value), 1e-9))
+        if (one := TIP.get(unit)) is not None:
+            found, slack = float(value) * one, FEED + _half_a_unit(value) * one
+        else:
+            # of a time, the digits of its last place, and of both ends
+            time = max(float(value), 1e-9)
+            found = abs(float(steps[k])) / time
+            ends = (written.start if k == 0 else written.moves[k - 1].end), move.end
+            apart = sum(length_slack(plan.robot, end) for end in ends)
+            slack = FEED + (found * _half_a_unit(value) + apart) / time
         if abs(found - feed) > slack:
             yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
 

@@ -31,7 +31,7 @@ def frame_of(printed: WrittenFrame) -> Array:
 
 
 def joints_of(robot: Robot, printed: WrittenJoints) -> Array:
-    """Controller angles [rad], shape (6,)."""
+    """The joints that turn [rad], shape (6,)."""
     values = _floats(printed.values)
     shown = values if printed.unit == "rad" else np.deg2rad(values)
     if robot.display.j3_less_j2:

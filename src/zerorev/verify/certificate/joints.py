@@ -90,11 +90,12 @@ class Joints:
         """
         joints = []
         for name, began, end, here in zip(self.robot.joint_names, leg.begin, leg.end, before, strict=True):
-            turns = ((here - began) / (2 * arb.pi())).unique_fmpz()
-            if turns is None:
-                raise LostError(f"the turns of the joints could not be decided {leg.place(0.0)}", proven=False)
-            if abs(here - began - 2 * arb.pi() * turns) > JOINT_TOLERANCE:
+            turns = round(float(here - began) / (2 * np.pi)) if (here - began).is_finite() else 0
+            apart = abs(here - began - 2 * arb.pi() * turns)
+            if apart > JOINT_TOLERANCE:
                 raise LostError(f"{name} is elsewhere where the move begins {leg.place(0.0)}", proven=True)
+            if not apart <= JOINT_TOLERANCE:
+                raise LostError(f"the turns of the joints could not be decided {leg.place(0.0)}", proven=False)
             if leg.printed and turns != 0:
                 raise LostError(f"{name} is sent whole turns away {leg.place(1.0)}", proven=True)
             joints.append(end + 2 * arb.pi() * turns)

@@ -146,7 +146,7 @@ def _same_turn(before: WrittenFrame | WrittenJoints, end: WrittenFrame | Written
 
 
 def _joints(robot: Robot, end: WrittenFrame | WrittenJoints) -> tuple[arb, ...] | None:
-    """Controller angles [rad]; None of a pose."""
+    """The joints that turn [rad]; None of a pose."""
     if isinstance(end, WrittenFrame):
         return None
     shown = [arb(str(value)) if end.unit == "rad" else _rad(value) for value in end.values]

@@ -23,7 +23,7 @@ from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
 from zerorev.verify.certificate.proof import nothing, prove
 from zerorev.verify.claims import complete
-from zerorev.verify.printed import joints_of, length_slack
+from zerorev.verify.printed import angle_slack, joints_of, length_slack
 
 __all__ = ["certify_program", "certify_program_hole"]
 
@@ -87,7 +87,9 @@ def certify_program_hole(
     first = joints_of(plan.robot, written.start)[None]
     with ball_arithmetic():
         path = written_motion(plan, program, written, hole_plan.hole, at)
-        margin = plan.settings.limit_margin
+        # the room that is kept to limits, but for what the last digits take of it
+        digits = max(angle_slack(plan.robot, end) for end in (written.start, *(move.end for move in written.moves)))
+        margin = max(plan.settings.limit_margin - digits, 0.0)
         proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin)
         corners = joint_corners(path)
         slack = max((length_slack(plan.robot, move.end) for move in written.moves), default=0.0)
