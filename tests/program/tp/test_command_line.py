@@ -1,9 +1,12 @@
 """From a job to a TP program and its certificate, by the command line."""
 
 import json
+import re
 
 import pytest
+import yaml
 
+from oracles.places import ROOT
 from zerorev import cli
 from zerorev.cli import main
 from zerorev.program.tp.read import read_tp
@@ -66,3 +69,14 @@ def test_no_program_without_the_number_of_the_tool(planned, tmp_path, capsys):
     assert main(["export", str(plan)]) == cli.FOUND
     assert "set tool_number in the job" in capsys.readouterr().err
     assert not list(tmp_path.glob("*.ls"))
+
+
+def test_the_page_shows_what_is_written(planned, tmp_path):
+    page = (ROOT / "docs/howto/controller_tp.md").read_text()
+    (job,), (listing,) = (re.findall(rf"```{begin}.*?)```", page, re.DOTALL) for begin in (r"yaml\n(", r"\n(/PROG"))
+    assert yaml.safe_load(job) | {"proof_boxes": 0} == JOB | {"controller": "tp"}
+    assert main(["export", str(planned), "-o", str(tmp_path / "WING.ls")]) == cli.FINE
+    written = {" ".join(line.split()) for line in (tmp_path / "WING.ls").read_text().splitlines()}
+    shown = [" ".join(line.split()) for line in listing.splitlines()]
+    assert len(shown) > 20
+    assert {line for line in shown if line != "..."} <= written
