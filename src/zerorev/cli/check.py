@@ -44,7 +44,7 @@ def check(
         plan: The plan file (JSON).
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
-        program: With --certify: prove this program (KRL: .src, TP: .ls), exported from the plan, instead: the rounded
+        program: With --certify: prove this program (.src, .mod, .ls), exported from the plan, instead: the rounded
             numbers that stand in it, lead-in and all. The plan file is left as it is.
         tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
             be certified, and write it into the plan file.

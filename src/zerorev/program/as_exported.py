@@ -134,7 +134,8 @@ class Expected:
         """
         line = program.holes[0].line
         found = tuple(_differences(program.head[1:], wanted.head[1:], self.dialect, line))
-        if not found or self.plan.settings.robroot is not None or program.parts:
+        known = self.plan.settings.robroot is not None or not self.dialect.asks_for_base
+        if not found or known or program.parts:
             return found
         asking = replace(self.plan, settings=replace(self.plan.settings, robroot=ROBROOT))
         try:

@@ -50,6 +50,7 @@ class Dialect:
         examine: what the language asks of a program beyond what all do; an error among the findings stops the export.
         most_holes: how many holes one file may have, so that the controller takes it; None: any number.
         at_rest: how many statements stand before those that call programs of the controller.
+        asks_for_base: whether the part frame may be counted from where the controller says that the robot stands.
     """
 
     controller: Controller
@@ -63,6 +64,7 @@ class Dialect:
     examine: Callable[[Program], tuple[Finding, ...]] = lambda program: ()
     most_holes: Callable[[Program], int | None] = lambda program: None
     at_rest: int = 0
+    asks_for_base: bool = False
 
     @property
     def name(self) -> str:

@@ -11,6 +11,7 @@ from zerorev.model.plan import Plan
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
 from zerorev.program.krl.dialect import KRL
+from zerorev.program.rapid.dialect import RAPID
 from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.tp.dialect import TP
 
@@ -19,7 +20,7 @@ __all__ = ["DIALECTS", "dialect_called", "dialect_of", "program_file", "read_pro
 MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, TP)}
+DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, RAPID, TP)}
 
 
 def dialect_called(name: str) -> Dialect:

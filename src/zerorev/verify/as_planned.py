@@ -15,6 +15,7 @@ import numpy as np
 
 from zerorev.model._arrays import Array, rotation_rpy, transform
 from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.model.profile import Profile
 from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenProgram
 from zerorev.verify.arm import branch_of, skeleton
 from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slack
@@ -123,6 +124,7 @@ def moves_as_planned(
         place = f", first at {names[int(np.argmax(beside))]}" if beside.any() else ""
         yield f"the points do not lead in to one deepest point and out again as planned{place}"
         return
+    distance = _along(profile, distance, at.standoff)
 
     # what the digits of points before it add up to is not held against a point: its stand-off says where it lies
     distance += np.sign(np.concatenate([steps[:1], steps])) * (at.standoff - planned)
@@ -153,6 +155,22 @@ def moves_as_planned(
     stops = hole_plan.corner is not None and hole_plan.corner.kind == "stop"
     yield from _blends_differ(plan, written, at, steps, 0.0 if stops else settings.turning.radius)
     yield from _paces_differ(plan, written, at, steps)
+
+
+def _along(profile: Profile, distance: Array, standoff: Array) -> Array:
+    """Where on the planned path points lie, by their stand-offs on the piece that leads to each [m], shape (n,).
+
+    The way from point to point sums up what each is rounded by; it only says which piece it is.
+
+    Args:
+        profile: the path.
+        distance: of the points, about [m], shape (n,).
+        standoff: of the points [m], shape (n,).
+    """
+    middle = np.concatenate([distance[:1], (distance[1:] + distance[:-1]) / 2])
+    piece = np.clip(np.searchsorted(profile.distance, middle) - 1, 0, len(profile.distance) - 2)
+    sense = np.sign(np.diff(profile.standoff))[piece]
+    return np.asarray(profile.distance[piece] + sense * (standoff - profile.standoff[piece]))
 
 
 def _blends_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array, at_corner: float) -> Iterator[str]:

@@ -38,4 +38,6 @@ def _retract(retract: Retract, name: str, version: str) -> ProgramFile:
     return ProgramFile(name + SUFFIX, retract_to_krl(retract, name, version))
 
 
-KRL = Dialect(CONTROLLERS["krl"], SUFFIX, alike, KRL_NAMES.of, _write, _read, _parts, _retract, at_rest=1)
+KRL = Dialect(
+    CONTROLLERS["krl"], SUFFIX, alike, KRL_NAMES.of, _write, _read, _parts, _retract, at_rest=1, asks_for_base=True
+)

@@ -1,0 +1,1 @@
+"""RAPID: words, writing and reading of programs for ABB controllers."""
