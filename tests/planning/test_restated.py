@@ -70,7 +70,7 @@ MAY_CHANGE = {
     "settings.joint_stiffness_nm_per_rad", "settings.legs",
     # of a plan of one hole, which has no moves between holes
     "settings.clearance_mm", "settings.safe_height_mm", "settings.part_thickness_mm", "settings.posture_freedom",
-    # of a hole in one go, without a countersink or a feed of the last of the way in, with a corner that is no joint move
+    # of a hole in one go, without a countersink, a feed of the last of the way in, or joint moves at the corner
     "settings.cycle.depth_mm", "settings.cycle.back_mm", "settings.countersink.diameter_mm",
     "settings.countersink.angle_deg", "settings.breakthrough.last_mm", "settings.corner_tolerance_mm",
     # a budget that the proof ends within

@@ -51,7 +51,7 @@ def waypoints(
         profile: of the motion.
         lead_in: its length [m].
         reach: how far from the corner joint moves begin and end [m]; 0: there are none.
-        last: of the way in, has a feed of its own [m].
+        last: of the way in, has a feed of its own [m]; 0: none has.
     """
     start = Waypoint(float(profile.standoff[0]), float(profile.psi[0]), "lead-in", "start of the stroke")
     points = [start]
@@ -65,7 +65,7 @@ def waypoints(
         leg: Leg = "plunge" if k <= profile.corner else "retract"
         end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, _said_of(profile, k))
         from_turn, to_turn = k - 1 in profile.turns, k in profile.turns
-        if k <= profile.corner and points[-1].standoff > last > end.standoff + reach * to_turn:
+        if k <= profile.corner and last > 0 and points[-1].standoff > last > end.standoff + reach * to_turn:
             slower = replace(_on_the_way(points[-1], end, points[-1].standoff - last), comment="the last of the way in")
             points.extend(_joint_moves(points[-1], slower, from_turn, False, reach))
             from_turn = False
