@@ -14,13 +14,14 @@ from zerorev.program.krl.dialect import KRL
 from zerorev.program.rapid.dialect import RAPID
 from zerorev.program.refusals import refuse_other_makers
 from zerorev.program.tp.dialect import TP
+from zerorev.program.urscript.dialect import URSCRIPT
 
 __all__ = ["DIALECTS", "dialect_called", "dialect_of", "program_file", "read_program"]
 
 MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, RAPID, TP)}
+DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, RAPID, TP, URSCRIPT)}
 
 
 def dialect_called(name: str) -> Dialect:

@@ -1,0 +1,1 @@
+"""URScript: words, writing and reading of programs for controllers of Universal Robots."""
