@@ -10,7 +10,13 @@ from oracles import arm
 from oracles.makers import free_leg_plan, panel_plan, position_plan, stand_in
 from oracles.tp_reader import motions, remarks, statements
 from zerorev.errors import NotExportableError
+from zerorev.files.io import plan_from_text, plan_to_json, read_robot
+from zerorev.files.text import json_text
 from zerorev.model.controller import Call, Calls, ExternalAxis
+from zerorev.model.job import Job
+from zerorev.model.profile import Profile
+from zerorev.planning.job import plan_job
+from zerorev.program.as_exported import as_exported
 from zerorev.program.export import export
 from zerorev.program.names import digest
 from zerorev.program.neutral import build_program
@@ -24,7 +30,7 @@ def written(plan, **wanted):
     return export(plan, version="test", **wanted).text
 
 
-def hold(plan, text, *, user=0, coupled=1, height=0.33):
+def hold(plan, text, *, user=0, coupled=1, height=0.33, near=30e-6):
     """Every point to the plan: by pose as it is seen from the controller's base, by joints through the arm."""
     T_root_base = np.eye(4)
     T_root_base[2, 3] = height
@@ -39,13 +45,13 @@ def hold(plan, text, *, user=0, coupled=1, height=0.33):
             meant = arm.drill_pose(of, point.standoff, point.psi)
             assert motion.frames == (user, 3)
             if motion.kind == "J":
-                found, near = arm.forward(plan.robot, motion.turning_joints(coupled)) @ T_flange_tcp, 30e-6
+                found, off = arm.forward(plan.robot, motion.turning_joints(coupled)) @ T_flange_tcp, near
             else:
                 frame = plan.T_base_part if user else T_root_base
                 pose = motion.pose.copy()
                 pose[:3, 3] *= 1e-3
-                found, near = frame @ pose @ DOWN, 1.0e-6
-            assert np.linalg.norm(found[:3, 3] - meant[:3, 3]) < near
+                found, off = frame @ pose @ DOWN, 1.0e-6
+            assert np.linalg.norm(found[:3, 3] - meant[:3, 3]) < off
             turned = np.linalg.norm(arm.error_twist(found, meant)[3:])
             assert turned < np.deg2rad(0.003 if motion.kind == "J" else 0.0015), k
     return motions(text)
@@ -60,6 +66,14 @@ def test_positions(number, fanuc, for_tp, certificates):
     assert [move.end for move in moved] == ["FINE", *["CNT100"] * (len(moved) - 2), "FINE"]
     assert [(each.verdict, each.reasons) for each in certificates(plan, exported)] == [("certified", ())]
     assert statements(exported.text) == ["UFRAME_NUM=0", "UTOOL_NUM=3"]
+
+
+@pytest.mark.parametrize("name", ["fanuc_m710ic_50", "fanuc_r2000ic_165f"])
+def test_larger_arms(name, for_tp, certificates):
+    plan = position_plan(read_robot(name), 2, **for_tp)
+    exported = export(plan, version="test")
+    hold(plan, exported.text, height=plan.robot.arm.c1, near=60e-6)
+    assert [(each.verdict, each.reasons) for each in certificates(plan, exported)] == [("certified", ())]
 
 
 def test_free_legs_in_a_user_frame(fanuc, for_tp, certificates):
@@ -149,12 +163,33 @@ def test_large_programs_are_split(fanuc, for_tp, spoil):
     assert lines <= 9_999
 
 
+def test_parts_that_a_controller_may_not_load(fanuc, for_tp, spoil):
+    program = build_program(panel_plan(fanuc, 12, **for_tp))
+    most = TP.most_holes(program)
+    many = spoil(program, holes=tuple(program.holes[k % 12] for k in range(most + 1)))
+    (said,) = [each.message for each in TP.examine(many) if "may not load" in each.message]
+    assert said.endswith(f"holes_per_program of {most} or less")
+    assert not [each for each in TP.examine(spoil(many, parts=(most, 1))) if "may not load" in each.message]
+
+
 def test_comments_fit(fanuc, for_tp):
     text = written(position_plan(fanuc, 1, **for_tp))
     lines = remarks(text)
     assert max(map(len, lines)) == 32
     assert len(lines) > 50
     assert text.isascii()
+
+
+@pytest.mark.parametrize("spins", [(20.0, 0.0, -25.0), (0.0, -20.0, -45.0), (90.0, 70.0, 45.0)])
+def test_of_a_plan_in_memory_and_in_its_file(spins, fanuc, for_tp, spoil):
+    """At a spin of 0 X of the tool points straight up, where W and R turn about one line; last bits must not decide."""
+    first = position_plan(fanuc, 1, **for_tp)
+    hole = spoil(first.holes[0].hole, profile=Profile.straight(first.holes[0].hole.depth, *np.deg2rad(spins)))
+    plan = plan_job(Job(fanuc, first.tool, (hole,), first.settings, name="given"))
+    assert plan.holes[0].motion is not None
+    text = TP.write(build_program(spoil(plan, holes=(spoil(plan.holes[0], findings=()),))), "GIVEN", (), "test")
+    in_file = plan_from_text(json_text(plan_to_json(plan)), "plan.json")
+    assert [own.wrong for own in as_exported(in_file, TP.read(text), TP, "GIVEN")] == [()]
 
 
 # --- numbers ----------------------------------------------------------------------------------------------------------

@@ -6,14 +6,16 @@ from collections.abc import Sequence
 
 from zerorev.errors import InputError
 from zerorev.model.corner import CONTROLLERS
+from zerorev.model.finding import Finding
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
+from zerorev.program.neutral import Program
 from zerorev.program.parts import joined
 from zerorev.program.tp.examine import examine
 from zerorev.program.tp.names import TP_NAMES
 from zerorev.program.tp.read import read_starter, read_tp
 from zerorev.program.tp.source import alike
-from zerorev.program.tp.write import SUFFIX, most_holes, write_tp
+from zerorev.program.tp.write import SUFFIX, most_holes, too_large, write_tp
 
 __all__ = ["TP"]
 
@@ -42,4 +44,8 @@ def _parts(file: ProgramFile) -> tuple[str, ...]:
     return tuple(name + SUFFIX for name in found)
 
 
-TP = Dialect(CONTROLLERS["tp"], SUFFIX, alike, TP_NAMES.of, write_tp, _read, _parts, None, examine, most_holes)
+def _examine(program: Program) -> tuple[Finding, ...]:
+    return (*examine(program), *too_large(program))
+
+
+TP = Dialect(CONTROLLERS["tp"], SUFFIX, alike, TP_NAMES.of, write_tp, _read, _parts, None, _examine, most_holes)

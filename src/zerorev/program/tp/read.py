@@ -32,7 +32,7 @@ WORLD = WrittenFrame((Decimal(0),) * 3, (Decimal(0),) * 3)
 MILLI = Decimal("0.001")
 
 _FRAME = re.compile(r"(UFRAME_NUM|UTOOL_NUM) ?= ?([0-9]{1,2})")
-_MOTION = re.compile(r"([JL]) P\[([0-9]{1,5})\] ([0-9]{1,5})(%|msec|mm/sec|cm/min) (FINE|CNT100)")
+_MOTION = re.compile(r"([JL]) P\[([0-9]{1,7})\] ([0-9]{1,5})(%|msec|mm/sec|cm/min) (FINE|CNT100)")
 _ARGUMENT = r"[0-9]{1,9}(?:\.[0-9]{1,9})?|'[^';]{0,34}'"
 _CALL = re.compile(rf"CALL ([A-Z][A-Z0-9_]{{0,35}})(?: ?\( ?((?:{_ARGUMENT})(?: ?, ?(?:{_ARGUMENT}))*) ?\))?")
 FORMS = (

@@ -29,8 +29,8 @@ _ATTRIBUTE = re.compile(
     r"|TCD:\s*STACK_SIZE\s*=\s*\d+,|(TASK_PRIORITY|TIME_SLICE|BUSY_LAMP_OFF|ABORT_REQUEST)\s*=\s*\d+,"
     r"|PAUSE_REQUEST\s*=\s*\d+;|CONTROL_CODE\s*=\s*[0-9A-F]{8}\s+[0-9A-F]{8};"
 )
-_LINE = re.compile(r"[ \t]*([0-9]{1,5}):([^;]*);[ \t]*")
-_POSITION = re.compile(r"P\[([0-9]{1,5})\]\{")
+_LINE = re.compile(r"[ \t]*([0-9]{1,7}):([^;]*);[ \t]*")
+_POSITION = re.compile(r"P\[([0-9]{1,7})\]\{")
 _FRAMES = re.compile(
     r"UF : ([0-9]{1,2}), UT : ([0-9]{1,2}),(?: CONFIG : '([NF]) ([UD]) ([TB]), (-?\d), (-?\d), (-?\d)',)?"
 )

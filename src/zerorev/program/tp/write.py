@@ -23,7 +23,7 @@ from zerorev.program.tp.listing import Frames, Listing
 from zerorev.program.tp.names import TP_NAMES, called
 from zerorev.program.tp.text import TP_COMMENTS, Speed, joint_time, tip_speed
 
-__all__ = ["MOST_LINES", "SUFFIX", "most_holes", "write_tp"]
+__all__ = ["SUFFIX", "most_holes", "too_large", "write_tp"]
 
 SUFFIX = ".ls"
 COMMENT = "zerorev drilling"  # 16 characters
@@ -75,6 +75,18 @@ def most_holes(program: Program) -> int:
         for kinds in zip(*((each.lines, each.positions) for each in listings), strict=True)
     )
     return max(1, min((MOST_LINES - begin) // lines, (MOST_POSITIONS - len(program.end)) // positions))
+
+
+def too_large(program: Program) -> tuple[Finding, ...]:
+    """What is said of files that have more holes than a controller may take, as the job asks for."""
+    most, size = most_holes(program), max(program.parts or (len(program.holes),))
+    if size <= most:
+        return ()
+    message = (
+        f"{size} holes in a file have more than {MOST_LINES:,} lines or {MOST_POSITIONS:,} positions, which a "
+        f"controller may not load: holes_per_program of {most} or less"
+    )
+    return (Finding("warning", "controller", message),)
 
 
 def _file(program: Program, name: str, begin: list[str], *, whole: bool = False) -> ProgramFile:
