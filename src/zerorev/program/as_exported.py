@@ -138,10 +138,7 @@ class Expected:
         if not found or known or program.parts:
             return found
         asking = replace(self.plan, settings=replace(self.plan.settings, robroot=ROBROOT))
-        try:
-            other = _read_again(build_program(asking, skip_failed=True, only=kept), self.dialect)
-        except NotExportableError:  # a language that cannot ask
-            return found
+        other = _read_again(build_program(asking, skip_failed=True, only=kept), self.dialect)
         return found if any(_differences(program.head[1:], other.head[1:], self.dialect, line)) else ()
 
     def _of(

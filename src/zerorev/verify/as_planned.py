@@ -126,8 +126,6 @@ def moves_as_planned(
         return
     distance = _along(profile, distance, at.standoff)
 
-    # what the digits of points before it add up to is not held against a point: its stand-off says where it lies
-    distance += np.sign(np.concatenate([steps[:1], steps])) * (at.standoff - planned)
     turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
     psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
     off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
