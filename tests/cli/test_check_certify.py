@@ -163,7 +163,7 @@ def test_a_program_edited_by_hand_is_refuted(plan_file, program_file, capsys):
     assert main(["check", "--certify", str(plan_file), "--program", str(program_file)]) == cli.FOUND
     out, _ = capsys.readouterr()
     assert "yes, refuted" in out
-    assert "no point of the program lies at the plan's breakpoint at stand-off 0 mm" in " ".join(out.split())
+    assert "do not lead in to one deepest point and out again as planned" in " ".join(out.split())
 
 
 def test_a_program_that_cannot_be_read(plan_file, program_file, capsys):

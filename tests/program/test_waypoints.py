@@ -81,3 +81,13 @@ def test_a_blend_is_clipped_to_half_the_shorter_neighbour():
 def test_an_exact_stop_at_the_corner_is_not_a_stop_elsewhere():
     passing = Settings(blend=0.0).passing_blend * 1e3
     assert blends_mm(Profile.straight(0.05, 0.3, 0.0, -0.3), 5e-3, 0.0) == [0, passing, 0, 0]
+
+
+def test_without_a_feed_of_its_own_the_way_in_is_not_cut_at_the_target():
+    """Also where the corner lies below it."""
+    profile = Profile.straight(50e-3, 0.3, 0.0, -0.4, corner=-1e-3)
+    points, corner = waypoints(profile, 0.0)
+    assert (len(points), corner) == (3, 1)
+    points, corner = waypoints(profile, 0.0, last=3e-3)
+    assert [round(point.standoff * 1e3, 9) for point in points] == [50, 3, -1, 50]
+    assert corner == 2

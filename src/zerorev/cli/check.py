@@ -85,6 +85,7 @@ def check(
         dialect = dialect_of(program)
 
     from zerorev.planning.restated import check_plan, without_proofs
+    from zerorev.report.words.outcome import curves
 
     with terminal.progress("checking", len(stated.holes)) as progress:
         checked = check_plan(stated, workers=None, progress=progress)
@@ -121,6 +122,8 @@ def check(
             terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
         elif certify:
             terminal.say(f"check and certificates written into {plan}")
+        if certify and (proven_for := curves(answer.holes)):
+            terminal.say(proven_for)
         proofs.show(found)
         if report is not None:
             terminal.say(said)

@@ -35,6 +35,8 @@ class Controller:
         makers: the first words of a robot's `manufacturer`, in small letters.
         usual: how the corner is passed where the job does not say.
         share: of the shorter move that a blend may take, at most.
+        parabola: whether a blend of straight moves is taken for a parabola, as far as one can know; else its curve is
+            not known, and a motion has to hold for every one.
         sized: whether a program says how large a blend is; else the controller's settings and the feed do.
         refused: ways of passing the corner that are not offered, and why.
     """
@@ -45,6 +47,7 @@ class Controller:
     makers: tuple[str, ...]
     usual: CornerKind
     share: float = 0.5
+    parabola: bool = False
     sized: bool = True
     refused: Mapping[CornerKind, str] = field(default_factory=dict)
 
@@ -58,6 +61,7 @@ CONTROLLERS: Mapping[str, Controller] = {
             "KUKA",
             ("kuka",),
             "blend",
+            parabola=True,
             refused={"joint": "the speed of a PTP is a whole percentage, too coarse for the feed of a drill"},
         ),
         Controller("rapid", "RAPID", "ABB", ("abb",), "joint"),
@@ -84,7 +88,7 @@ CONTROLLERS: Mapping[str, Controller] = {
 }
 assert tuple(CONTROLLERS) == get_args(ControllerName)
 
-UNKNOWN = Controller("krl", "", "", (), "blend")
+UNKNOWN = Controller("krl", "", "", (), "blend", parabola=True)
 
 
 def controller_of(manufacturer: str) -> Controller | None:

@@ -211,6 +211,19 @@ class Certificate:
     blend_min_rate: Annotated[Array, SixFigures("in the blends no joint moves slower; null without one", DEG_PER_MM)]
     limit_distance: Annotated[Array, SixFigures("no joint comes nearer to a limit", DEG)]
     reasons: Annotated[tuple[str, ...], Texts("what is refuted or undecided, one sentence each")] = ()
+    curve: Annotated[
+        Literal["any", "one_way", "parabola"] | None,
+        Choice(
+            "the blends of which it is proven",
+            words={
+                "any": "every mix of the velocities of the two moves",
+                "one_way": "every mix in which the share of the second never falls",
+                "parabola": "a parabola alone",
+            },
+            none="no blend, or nothing is proven",
+            added=True,
+        ),
+    ] = None
 
 
 @dataclass(frozen=True)

@@ -479,6 +479,11 @@ class Settings:
         return known_controller(self.controller).share
 
     @property
+    def curve_known(self) -> bool:
+        """Whether the controller is taken to blend straight moves by a parabola; else by any curve."""
+        return known_controller(self.controller).parabola
+
+    @property
     def corner_blend(self) -> float:
         """Radius of the blend of straight moves at the corner [m]; 0 where they are not blended there."""
         return self.blend if self.turning.kind == "blend" else 0.0

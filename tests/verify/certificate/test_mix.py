@@ -23,7 +23,7 @@ from zerorev.model.tool import Tool
 from zerorev.motion import kinematics
 from zerorev.planning.hole import plan
 from zerorev.verify.certificate.arm import Setting, posture_of
-from zerorev.verify.certificate.certify import certify_hole, certify_motion
+from zerorev.verify.certificate.certify import certify_motion
 from zerorev.verify.certificate.legs import planned_motion
 from zerorev.verify.certificate.mix import mixed
 from zerorev.verify.certificate.path import Rig, Segment
@@ -314,10 +314,11 @@ def test_out_of_reach_between_two_legs_in_reach():
 
 def test_a_certificate_of_every_blend(thesis):
     case = thesis[1]
-    parts = ROBOT, TOOL, SETTINGS, case.plan
-    usual = certify_hole(*parts)
+    motion = case.plan.motion
+    parts = ROBOT, TOOL, case.plan.hole, motion.profile, motion.joints
+    usual = certify_motion(*parts, blend=SETTINGS.blend)
     for mixes in MIXES:
-        answer = certify_hole(*parts, mixes)
+        answer = certify_motion(*parts, blend=SETTINGS.blend, mixes=mixes)
         assert answer.verdict == "certified"
         assert answer.pieces > usual.pieces
         np.testing.assert_array_equal(answer.min_rate, usual.min_rate)

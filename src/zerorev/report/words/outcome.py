@@ -10,13 +10,18 @@ from zerorev.model.plan import HolePlan
 from zerorev.report.words.hole_rows import Standing, standing
 from zerorev.report.words.terminal import duration
 
-__all__ = ["STANDINGS", "outcome"]
+__all__ = ["STANDINGS", "curves", "outcome"]
 
 STANDINGS: dict[Standing, str] = {
     "zero": "without a reversal",
     "reversals": "with reversals",
     "infeasible": "without a motion",
     "failed": "failed the check",
+}
+CURVES: dict[str, str] = {
+    "any": "every curve",
+    "one_way": "every curve that turns one way",
+    "parabola": "a parabola alone",
 }
 VERDICTS: tuple[Literal["certified", "undecided", "refuted"], ...] = ("certified", "undecided", "refuted")
 
@@ -40,3 +45,16 @@ def outcome(done: str, answers: Iterable[HolePlan], seconds: float, *, proven: b
     taken = f"{seconds:.0f} s" if seconds < 59.5 else duration(seconds)
     holes = f"{len(answers):,} hole{'' if len(answers) == 1 else 's'}"
     return f"{holes} {done} in {taken}: {', '.join(parts)}."
+
+
+def curves(answers: Iterable[HolePlan]) -> str:
+    """For which curves of the blends the certificates hold; empty where no straight moves are blended."""
+    counts = Counter(
+        answer.certificate.curve
+        for answer in answers
+        if answer.certificate is not None and answer.certificate.verdict == "certified"
+    )
+    parts = [(counts[curve], words) for curve, words in CURVES.items() if counts[curve]]
+    if len(parts) == 1:
+        return f"the blends are proven for {parts[0][1]}"
+    return "the blends are proven for " + ", ".join(f"{words} ({count:,})" for count, words in parts) if parts else ""

@@ -21,6 +21,7 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate.at_corner import planned_corner
+from zerorev.verify.certificate.blends import for_the_widest
 from zerorev.verify.certificate.claims import claimed_reversals, false_claims
 from zerorev.verify.certificate.legs import planned_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
@@ -47,9 +48,7 @@ def certify_plan(plan: Plan) -> Plan:
     return replace(plan, holes=holes)
 
 
-def certify_hole(
-    robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, mixes: Mixes | None = None
-) -> Certificate:
+def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> Certificate:
     """Prove or refute what a plan claims of one hole; a wrong plan is reported, never raised.
 
     Args:
@@ -57,7 +56,6 @@ def certify_hole(
         tool: the drill.
         settings: blend, corner and bounds as planned.
         hole_plan: what is claimed.
-        mixes: blends that are proven besides the parabola, of any curve; None: none.
     """
     wrong = tuple(complete(hole_plan))
     motion, score = hole_plan.motion, hole_plan.score
@@ -65,17 +63,21 @@ def certify_hole(
         return nothing("refuted", wrong)
     if wrong := tuple(as_asked(robot, tool, settings, hole_plan, motion)):
         return nothing("refuted", wrong)
-    certificate = certify_motion(
-        robot,
-        tool,
-        hole_plan.hole,
-        motion.profile,
-        motion.joints,
-        blend=settings.corner_blend,
-        passing_blend=settings.passing_blend,
-        claims=score,
-        limit_margin=settings.limit_margin,
-        mixes=mixes,
+    certificate = for_the_widest(
+        partial(
+            certify_motion,
+            robot,
+            tool,
+            hole_plan.hole,
+            motion.profile,
+            motion.joints,
+            blend=settings.corner_blend,
+            passing_blend=settings.passing_blend,
+            claims=score,
+            limit_margin=settings.limit_margin,
+        ),
+        blended=settings.corner_blend > 0 or motion.profile.psi.size > 3,
+        curve_known=settings.curve_known,
     )
     return planned_corner(robot, tool, settings, hole_plan, certificate)
 

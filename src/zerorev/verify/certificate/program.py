@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from zerorev.model.plan import Certificate, HolePlan, Plan
 from zerorev.model.written import Drilled, WrittenHole, WrittenProgram
 from zerorev.verify.as_planned import frames_as_planned, moves_as_planned, places
 from zerorev.verify.certificate.at_corner import joint_corners, near_the_axis
+from zerorev.verify.certificate.blends import for_the_widest
 from zerorev.verify.certificate.claims import Proven, claimed_reversals
 from zerorev.verify.certificate.moves import written_motion
 from zerorev.verify.certificate.piece import ball_arithmetic
@@ -90,7 +92,11 @@ def certify_program_hole(
         # the room that is kept to limits, but for what the last digits take of it
         digits = max(angle_slack(plan.robot, end) for end in (written.start, *(move.end for move in written.moves)))
         margin = max(plan.settings.limit_margin - digits, 0.0)
-        proof = prove(plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin)
+        proof = for_the_widest(
+            partial(prove, plan.robot, path, first, claimed_reversals(score), on_other_turns, margin=margin),
+            blended=bool(path.blends),
+            curve_known=plan.settings.curve_known,
+        )
         corners = joint_corners(path)
         slack = max((length_slack(plan.robot, move.end) for move in written.moves), default=0.0)
         proof = near_the_axis(plan.robot, plan.tool, plan.settings, hole_plan, corners, slack, proof)
