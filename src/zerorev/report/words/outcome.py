@@ -18,7 +18,7 @@ STANDINGS: dict[Standing, str] = {
     "infeasible": "without a motion",
     "failed": "failed the check",
 }
-CURVES: dict[str, str] = {
+CURVES: dict[Literal["any", "one_way", "parabola"], str] = {
     "any": "every curve",
     "one_way": "every curve that turns one way",
     "parabola": "a parabola alone",
