@@ -39,8 +39,8 @@ def export(
 
     Args:
         plan: The plan file (JSON).
-        controller: The robot's controller: krl (KUKA), rapid (ABB), tp (FANUC) or urscript (Universal Robots); by
-            default the one that the plan was made for, or that of the robot's maker.
+        controller: The robot's controller: krl (KUKA), rapid (ABB), tp (FANUC), urscript (Universal Robots) or inform
+            (Yaskawa); by default the one that the plan was made for, or that of the robot's maker.
         output: The program's file, which is replaced if it is there; by default beside the plan, called as the plan is,
             and only a program of this very plan is replaced.
         skip_failed: Leave out the holes that must not be exported instead of refusing them all.

@@ -10,6 +10,7 @@ from zerorev.model.corner import controller_of
 from zerorev.model.plan import Plan
 from zerorev.model.written import WrittenProgram
 from zerorev.program.dialect import Dialect, ProgramFile
+from zerorev.program.inform.dialect import INFORM
 from zerorev.program.krl.dialect import KRL
 from zerorev.program.rapid.dialect import RAPID
 from zerorev.program.refusals import refuse_other_makers
@@ -21,7 +22,7 @@ __all__ = ["DIALECTS", "dialect_called", "dialect_of", "program_file", "read_pro
 MOST_BYTES = 16 * 2**20  # of a program: some 20,000 holes
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
-DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, RAPID, TP, URSCRIPT)}
+DIALECTS: dict[str, Dialect] = {each.name: each for each in (KRL, RAPID, TP, URSCRIPT, INFORM)}
 
 
 def dialect_called(name: str) -> Dialect:
@@ -42,7 +43,7 @@ def dialect_of(path: Path) -> Dialect:
         InputError: it ends like no program.
     """
     for dialect in DIALECTS.values():
-        if path.suffix.lower() == dialect.suffix:
+        if path.suffix.lower() == dialect.suffix.lower():
             return dialect
     known = " or ".join(f"{each.suffix} ({each.name}, {each.controller.maker})" for each in DIALECTS.values())
     raise InputError(

@@ -16,8 +16,8 @@ __all__ = ["MARK", "check_replaceable", "plan_mark"]
 MARK = "Plan file "
 """What stands before the mark in the comments of a program."""
 
-_MARKED = re.compile(rf"{MARK}([0-9a-f]{{16}}) ".encode())
-_HEAD = 65_536  # bytes: the mark is in the first lines
+_MARKED = re.compile(rf"{MARK}([0-9a-f]{{16}})\s".encode())
+_HEAD = 2**20  # bytes: the mark is in the first lines, of some languages after all positions
 
 
 def plan_mark(name: str, file: str) -> str:

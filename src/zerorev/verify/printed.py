@@ -33,6 +33,8 @@ def frame_of(printed: WrittenFrame) -> Array:
 def joints_of(robot: Robot, printed: WrittenJoints) -> Array:
     """The joints that turn [rad], shape (6,)."""
     values = _floats(printed.values)
+    if printed.unit == "pulses":  # of the joints that turn
+        return np.deg2rad(values / _pulses_per_deg(robot))
     shown = values if printed.unit == "rad" else np.deg2rad(values)
     if robot.display.j3_less_j2:
         shown[2] += shown[1]
@@ -59,8 +61,15 @@ def angle_slack(robot: Robot, printed: WrittenFrame | WrittenJoints) -> float:
 
 def _joints_slack(robot: Robot, printed: WrittenJoints) -> float:
     """Half a unit in each of six axes [rad]."""
+    if printed.unit == "pulses":
+        return float(np.deg2rad(0.5 / np.abs(_pulses_per_deg(robot))).sum())
     unit = float(_unit(printed.values))
     return 3 * (unit if printed.unit == "rad" else float(np.deg2rad(unit)))
+
+
+def _pulses_per_deg(robot: Robot) -> Array:
+    assert robot.pulses_per_deg is not None  # no program of pulses is written for a robot without them
+    return np.array(robot.pulses_per_deg)
 
 
 def _unit(numbers: Iterable[Decimal]) -> Decimal:

@@ -149,6 +149,10 @@ def _joints(robot: Robot, end: WrittenFrame | WrittenJoints) -> tuple[arb, ...] 
     """The joints that turn [rad]; None of a pose."""
     if isinstance(end, WrittenFrame):
         return None
+    if end.unit == "pulses":  # of the joints that turn
+        assert robot.pulses_per_deg is not None  # no program of pulses is written for a robot without them
+        pairs = zip(end.values, robot.pulses_per_deg, strict=True)
+        return tuple(arb(str(count)) / arb(each) * arb.pi() / 180 for count, each in pairs)
     shown = [arb(str(value)) if end.unit == "rad" else _rad(value) for value in end.values]
     if robot.display.j3_less_j2:
         shown[2] = shown[2] + shown[1]

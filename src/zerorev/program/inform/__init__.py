@@ -1,0 +1,1 @@
+"""INFORM: words, writing and reading of jobs for Yaskawa controllers."""
