@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from zerorev.model._arrays import Array
-from zerorev.model.finding import Finding, Level
+from zerorev.model.finding import Finding
 from zerorev.motion.kinematics import forward
 from zerorev.program.neutral import HoleProgram, Move, Program
 from zerorev.program.notes import turn_speed
@@ -92,8 +92,9 @@ def _frames(program: Program) -> Iterator[Finding]:
 
 
 def _paces(program: Program) -> Iterator[Finding]:
-    """Feeds that whole numbers change, each once."""
-    changed: dict[str, float] = {}
+    """Feeds that whole numbers change: each of a straight move once, and the worst of the joint moves."""
+    straight: dict[str, float] = {}
+    joint: dict[str, float] = {}
     for move in _moves(program):
         if move.linear:
             speed = tip_speed(move.feed)
@@ -103,11 +104,15 @@ def _paces(program: Program) -> Iterator[Finding]:
             found = move.length / (speed.value * 1e-3)
         share = abs(found / move.feed - 1)
         if share > 1e-6:
-            what = f"{move.feed * 1e3:g} mm/s is written as {speed}, which is {found * 1e3:.4g} mm/s"
-            changed[what if move.linear else f"over {move.length * 1e3:.3g} mm {what}"] = share
-    for what, share in changed.items():
-        level: Level = "warning" if share > NOTICEABLE else "info"
-        yield Finding(level, "controller", f"a feed of {what}" if what[0].isdigit() else f"a feed {what}")
+            over = "" if move.linear else f" over {move.length * 1e3:.3g} mm"
+            what = f"a feed of {move.feed * 1e3:g} mm/s{over} is written as {speed}, which is {found * 1e3:.4g} mm/s"
+            (straight if move.linear else joint)[what] = share
+    if joint:
+        worst = max(joint, key=lambda what: joint[what])
+        many = f"; of {len(joint)} such changes at the corner the greatest" if len(joint) > 1 else ""
+        straight[worst + many] = joint[worst]
+    for what, share in straight.items():
+        yield Finding("warning" if share > NOTICEABLE else "info", "controller", what)
 
 
 def _hole(program: Program, hole: HoleProgram) -> Iterator[Finding]:
