@@ -10,6 +10,7 @@ from oracles import rapid_reader
 from oracles.makers import free_leg_plan, panel_plan, position_plan, stand_in
 from zerorev.files.io import plan_from_text, plan_to_json, read_robot
 from zerorev.files.text import json_text
+from zerorev.model.cycle import Cycle
 from zerorev.model.job import Settings
 from zerorev.program.as_exported import as_exported
 from zerorev.program.export import export
@@ -31,6 +32,11 @@ PLANS = {
     "free legs": lambda: free_leg_plan(read_robot(IRB), min_rate=SLOWEST),
     "free legs, stand-in": lambda: free_leg_plan(stand_in("ABB")),
     "blend": lambda: position_plan(read_robot(IRB), 1, corner="blend", controller="rapid"),
+    "chips broken": lambda: position_plan(read_robot(IRB), 1, cycle=Cycle("chip_break", 10e-3, 0.3e-3)),
+    "chips broken, stand-in": lambda: position_plan(stand_in("ABB"), 1, cycle=Cycle("chip_break", 5e-3, 1e-3)),
+    "the last of the way in": lambda: position_plan(
+        read_robot(IRB), 1, breakthrough_length=2e-3, breakthrough_feed=1e-3, feed_plunge=3e-3
+    ),
     "stop": lambda: position_plan(read_robot(IRB), 1, blend=0.0),
     "long joint moves": lambda: position_plan(read_robot(IRB), 1, blend=2e-3, deepen_corner=True),
     "no lead-in": lambda: position_plan(read_robot(IRB), 1, lead_in=0.0),
@@ -92,20 +98,27 @@ def follow(plan, exported, samples=50):
             # what is said of the joint moves, and round-off
             assert off.max() < (own.corner.off_axis * 1e3 if move.kind == "MoveAbsJ" else 0) + 3e-4
             depths.append((target - T[[0, -1], :3, 3]) @ direction)
-            inwards = depths[-1][0] > depths[-1][1]
-            feed = (settings.feed_plunge if inwards else settings.feed_retract) * 1e3
             length = abs(depths[-1][0] - depths[-1][1])
-            in_the_air = max(depths[-1]) > (own.hole.depth + settings.lead_in) * 1e3 + 1e-3
-            if not in_the_air:
-                assert (length / move.time if move.time else move.speed[0]) == pytest.approx(feed, abs=2e-2)
             if move.conf:
                 check_posture(move, way[-1], own.motion.branch)
             zone_is_whole(move, length, way, T)
         stroke = np.array(depths)
+        check_feeds(settings, own.hole.depth, hole[1:], stroke)
         assert stroke.min() == pytest.approx(own.motion.profile.standoff.min() * 1e3, abs=2e-4)
         inside = [way for way, (a, b) in zip(joints, depths, strict=True) if min(a, b) < own.hole.depth * 1e3 - 1e-3]
         steps = np.diff(np.concatenate([inside[0], *(way[1:] for way in inside[1:])]), axis=0)
         assert not ((steps > 1e-6).any(axis=0) & (steps < -1e-6).any(axis=0)).any()
+
+
+def check_feeds(settings, depth, moves, depths):
+    """Up to the deepest point the plunge's, back and forth; at last that of the breakthrough; then the retract's."""
+    for k, (move, (begin, end)) in enumerate(zip(moves, depths, strict=True)):
+        if max(begin, end) > (depth + settings.lead_in) * 1e3 + 1e-3:
+            continue  # in the air
+        feed = settings.feed_plunge if k <= np.argmin(depths[:, 1]) else settings.feed_retract
+        if feed == settings.feed_plunge and settings.breakthrough_feed and end < begin:
+            feed = settings.breakthrough_feed if begin <= settings.breakthrough_length * 1e3 + 1e-3 else feed
+        assert (abs(begin - end) / move.time if move.time else move.speed[0]) == pytest.approx(feed * 1e3, abs=2e-2)
 
 
 def check_posture(move, joints, branch):
