@@ -11,6 +11,7 @@ from zerorev import cli
 from zerorev.cli import main
 from zerorev.files.io import write_plan
 from zerorev.model.controller import Call, Calls
+from zerorev.model.cycle import Cycle
 from zerorev.program.as_exported import as_exported
 from zerorev.program.dialects import read_program
 from zerorev.program.export import export
@@ -112,6 +113,15 @@ def test_a_deeper_corner(plan_called):
     plan = plan_called("position 3", deepen_corner=True, lead_in=0.0, approach=5e-3, retract=8e-3)
     exported = export(plan)
     assert "corner, 0.225 mm below the target" in exported.text
+    assert_certified(plan, exported.files)
+
+
+def test_chips_are_broken(plan_called):
+    plan = plan_called("position 1", cycle=Cycle("chip_break", 10e-3, 0.3e-3))
+    exported = export(plan)
+    script = urscript_reader.read(exported.text)
+    assert sum(move.kind == "jointly" for move in script.moves) > 2
+    assert {move.radius > 0 for move in script.moves[1:-1]} == {True}
     assert_certified(plan, exported.files)
 
 

@@ -17,7 +17,7 @@ from zerorev.program.urscript.head import AXES, sentences
 from zerorev.program.urscript.names import URSCRIPT_NAMES
 from zerorev.program.urscript.text import INDENT, URSCRIPT_COMMENTS, joint_list, pose
 
-__all__ = ["FEW_DECIMALS", "urscript_files"]
+__all__ = ["ACCELERATION", "FEW_DECIMALS", "urscript_files"]
 
 JOINT_SPEED, JOINT_ACCELERATION = "0.4", "0.8"  # [rad/s], [rad/s^2] of the moves that are not checked for collisions
 ACCELERATION = "0.5"  # [m/s^2]: 20 mm/s within half a millimetre
