@@ -389,7 +389,7 @@ class Settings:
             least=1,
             to=16,
             note="KRL: `$ACT_TOOL`, and `$LOAD` by the mass of the tool, or of that number where that is not known. "
-            "TP: `UTOOL_NUM`, which it needs; what must stand there is said in its comments",
+            "TP, INFORM: `UTOOL_NUM`, `///TOOL`, which they need; what must stand there is said in their comments",
             group=PROGRAM,
             label="tool number",
         ),

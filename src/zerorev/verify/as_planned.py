@@ -16,6 +16,7 @@ import numpy as np
 from zerorev.model._arrays import Array, rotation_rpy, transform
 from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
+from zerorev.model.robot import Robot
 from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenProgram
 from zerorev.verify.arm import branch_of, skeleton
 from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slack
@@ -195,19 +196,34 @@ def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) ->
         if at.first <= k < at.corner and settings.breakthrough_feed is not None:
             feed = settings.breakthrough_feed if outer <= settings.breakthrough_length + PLACE else feed
         value, unit = move.pace
-        if unit == "%":
-            continue  # of what the joints can: compared with what `export` writes
         if (one := TIP.get(unit)) is not None:
             found, slack = float(value) * one, FEED + _half_a_unit(value) * one
         else:
             # of a time, the digits of its last place, and of both ends
-            time = max(float(value), 1e-9)
-            found = abs(float(steps[k])) / time
             ends = (written.start if k == 0 else written.moves[k - 1].end), move.end
+            time, open_ = _time_by_share(plan.robot, *ends, value) if unit == "%" else (value, _half_a_unit(value))
+            time = max(float(time), 1e-9)
+            found = abs(float(steps[k])) / time
             apart = sum(length_slack(plan.robot, end) for end in ends)
-            slack = FEED + (found * _half_a_unit(value) + apart) / time
+            slack = FEED + (found * open_ + apart) / time
         if abs(found - feed) > slack:
             yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+
+
+def _time_by_share(
+    robot: Robot, begin: WrittenFrame | WrittenJoints, end: WrittenFrame | WrittenJoints, share: Decimal
+) -> tuple[float, float]:
+    """The time of a joint move by a share of what the joints can [%], and what its digits leave open of it [s].
+
+    The joint that would need longest at its full speed sets the time.
+    """
+    assert isinstance(begin, WrittenJoints)
+    assert isinstance(end, WrittenJoints)
+    turned = np.abs(joints_of(robot, end) - joints_of(robot, begin)) / robot.limits.speed
+    rounded = sum(angle_slack(robot, each) for each in (begin, end)) / float(robot.limits.speed.min())
+    of_all = max(float(share), 1e-9) / 100
+    time = float(turned.max()) / of_all
+    return time, rounded / of_all + time * _half_a_unit(share) / max(float(share), 1e-9)
 
 
 def _half_a_unit(number: Decimal) -> float:

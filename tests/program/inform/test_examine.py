@@ -153,3 +153,12 @@ def test_pulses_of_the_file(plan_for):
         return float(finding.message.split("up to ")[1].split()[0])
 
     assert figure(rough) > 20 * figure(fine)
+
+
+def test_the_feed_of_the_last_of_the_way_in(plan_for):
+    """It is as rough as the others."""
+    plan = plan_for("ma2010", 1, breakthrough_length=5e-3, breakthrough_feed=1.26e-3)
+    exported = export(plan)
+    assert " V=1.3 " in exported.text
+    assert "the feed of the plunge is 1.3 mm/s instead of 1.26" in " ".join(each.message for each in exported.findings)
+    assert certified(plan) == [True]

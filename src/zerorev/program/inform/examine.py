@@ -11,7 +11,7 @@ from zerorev.model.finding import Finding
 from zerorev.model.plan import named_holes
 from zerorev.program.inform.needs import cannot_say, needs, too_slow
 from zerorev.program.inform.rounded import rounded
-from zerorev.program.inform.text import feed_written, joint_moves, share_written
+from zerorev.program.inform.text import feed_written, feeds_of, joint_moves, share_written
 from zerorev.program.neutral import Program
 
 __all__ = ["examine"]
@@ -36,7 +36,7 @@ def examine(program: Program) -> tuple[Finding, ...]:
 
 def _feeds(program: Program) -> Iterator[Finding]:
     """Feeds of the straight moves, which have one decimal of a mm/s."""
-    for leg, feed in (("plunge", program.settings.feed_plunge), ("retract", program.settings.feed_retract)):
+    for leg, feed in feeds_of(program):
         written = float(feed_written(feed))
         off = written / (feed * 1e3) - 1
         if abs(off) > FEED_OFF:

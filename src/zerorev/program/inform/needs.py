@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from zerorev.errors import NotExportableError
 from zerorev.model.corner import CONTROLLERS
-from zerorev.program.inform.text import SHARES, SLOWEST, feed_written, joint_moves, share_written
+from zerorev.program.inform.text import SHARES, SLOWEST, feed_written, feeds_of, joint_moves, share_written
 from zerorev.program.neutral import Program
 
 __all__ = ["cannot_say", "needs", "refuse_calls", "refuse_unwritable", "too_slow"]
@@ -47,12 +47,11 @@ def cannot_say(program: Program) -> Iterator[str]:
 
 def too_slow(program: Program) -> Iterator[str]:
     """Which speeds come out as nothing in the digits that a job has."""
-    feeds = {"plunge": program.settings.feed_plunge, "retract": program.settings.feed_retract}
-    for leg, feed in feeds.items():
+    for leg, feed in feeds_of(program):
         if float(feed_written(feed)) <= 0:
             yield (
-                f"the feed of the {leg}, {feed * 1e3:g} mm/s, rounds to zero: V= has one decimal; feed_mm_s must be "
-                f"{SLOWEST * 1e3:g} or more"
+                f"the feed of the {leg}, {feed * 1e3:g} mm/s, rounds to zero: V= has one decimal, so a feed must be "
+                f"{SLOWEST * 1e3:g} mm/s or more"
             )
     slowest = [
         (share, hole.id)

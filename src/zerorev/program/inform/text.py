@@ -7,11 +7,12 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
 from zerorev.program.letters import Comments, settled
-from zerorev.program.neutral import HoleProgram, Move
+from zerorev.program.neutral import HoleProgram, Move, Program
+from zerorev.program.waypoints import Leg
 
 __all__ = [
-    "BLENDED", "INFORM_COMMENTS", "LONGEST_COMMENT", "SHARES", "SLOWEST", "STOPS", "feed_written", "from_pulses",
-    "joint_moves", "position", "pulses", "share_needed", "share_written",
+    "BLENDED", "INFORM_COMMENTS", "LONGEST_COMMENT", "SHARES", "SLOWEST", "STOPS", "feed_written", "feeds_of",
+    "from_pulses", "joint_moves", "position", "pulses", "share_needed", "share_written",
 ]  # fmt: skip
 
 LONGEST_COMMENT = 32  # characters
@@ -75,6 +76,16 @@ def share_needed(robot: Robot, begin: Array, move: Move) -> float:
     """
     fastest = float(np.max(np.abs(move.end.joints - begin) / robot.limits.speed))
     return 100.0 * fastest / move.time
+
+
+def feeds_of(program: Program) -> list[tuple[Leg, float]]:
+    """The feeds of straight moves [m/s], each once, and before each a leg that has it: plunge or retract if they do."""
+    legs: dict[float, Leg] = {}
+    for hole in program.holes:
+        for move in hole.moves:
+            if move.linear and (move.feed not in legs or move.leg in ("plunge", "retract")):
+                legs[move.feed] = move.leg
+    return [(leg, feed) for feed, leg in legs.items()]
 
 
 def joint_moves(robot: Robot, hole: HoleProgram) -> list[tuple[Move, float]]:
