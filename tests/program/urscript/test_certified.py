@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from oracles import arm, urscript_reader
+from oracles.makers import position_plan
 from zerorev import cli
 from zerorev.cli import main
 from zerorev.files.io import write_plan
@@ -113,6 +114,29 @@ def test_a_deeper_corner(plan_called):
     plan = plan_called("position 3", deepen_corner=True, lead_in=0.0, approach=5e-3, retract=8e-3)
     exported = export(plan)
     assert "corner, 0.225 mm below the target" in exported.text
+    assert_certified(plan, exported.files)
+
+
+def test_a_controller_that_counts_from_a_turned_base(robot):
+    """As UR's base is turned against the base_link of ROS: the part frame is given in the former."""
+    turned = replace(robot, name="turned", base_in_root=(0.0, 0.0, 0.0, 0.0, 0.0, np.pi))
+    plan = moved(position_plan(turned, 1))
+    exported = export(plan)
+    script = urscript_reader.read(exported.text)
+    half_a_turn = np.diag([-1.0, -1.0, 1.0, 1.0])
+    np.testing.assert_allclose(script.T_base_part, half_a_turn @ plan.T_base_part, rtol=0, atol=3e-9)
+    assert_certified(plan, exported.files)
+    # a program for a base that is not turned is not this plan's
+    other = export(replace(plan, robot=replace(turned, base_in_root=None)))
+    assert {each.verdict for each in certificates(plan, other.files)} == {"refuted"}
+
+
+def test_a_feed_of_its_own_for_the_last_of_the_way_in(plan_called):
+    plan = plan_called("position 1", breakthrough_length=3e-3, breakthrough_feed=2e-3)
+    exported = export(plan)
+    script = urscript_reader.read(exported.text)
+    assert [move.feed for move in script.moves if move.kind == "straight"] == [0.005, 0.005, 0.002, 0.02]
+    assert [move.time for move in script.moves if move.kind == "jointly"] == [0.5, 0.05]
     assert_certified(plan, exported.files)
 
 
