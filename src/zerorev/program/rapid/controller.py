@@ -24,25 +24,26 @@ LIGHTEST = 1e-3  # [kg], as it is printed: a load of 0 is an error on the contro
 INERTIA_DECIMALS = 6
 
 
-def frames(program: Program, name: str) -> list[str]:
-    """The tool with what it weighs, and the work object, as a module called so declares them."""
+def frames(program: Program, name: str, T_base_object: Array) -> list[str]:
+    """The tool with what it weighs, and a work object, as a module called so declares them."""
     T = program.tool.T_flange_tcp @ Z_ALONG_PLUNGE
     load = program.tool.load
     assert load is not None  # `refuse` has seen to it
+    user_frame = pose(_in_world(program, T_base_object))
     return [
         f"PERS tooldata {tool(name)}:=[TRUE,[{pose(T)}],{_load(load)}];",
-        f'PERS wobjdata {part_frame(name)}:=[FALSE,TRUE,"",[{pose(_base(program))}],[[0,0,0],{UNIT}]];',
+        f'PERS wobjdata {part_frame(name)}:=[FALSE,TRUE,"",[{user_frame}],[[0,0,0],{UNIT}]];',
     ]
 
 
-def _base(program: Program) -> Array:
-    """The part frame in the controller's world, shape (4, 4), translation [m]."""
-    T_base_part = np.asarray(np.linalg.inv(program.robot.T_root_base) @ program.T_base_part)
+def _in_world(program: Program, T_base_object: Array) -> Array:
+    """A frame, given from the arm's base, in the controller's world, shape (4, 4), translation [m]."""
+    T_base_object = np.asarray(np.linalg.inv(program.robot.T_root_base) @ T_base_object)
     root = program.settings.robroot
     if not isinstance(root, tuple):
-        return T_base_part
+        return T_base_object
     x, y, z, roll, pitch, yaw = root
-    return np.asarray(transform(rotation_rpy(roll, pitch, yaw), np.array([x, y, z])) @ T_base_part)
+    return np.asarray(transform(rotation_rpy(roll, pitch, yaw), np.array([x, y, z])) @ T_base_object)
 
 
 def _load(load: Load) -> str:

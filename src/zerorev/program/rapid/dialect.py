@@ -12,8 +12,10 @@ from zerorev.program.neutral import Program
 from zerorev.program.rapid.examine import examine
 from zerorev.program.rapid.modules import parts_called, read_modules
 from zerorev.program.rapid.names import RAPID_NAMES
+from zerorev.program.rapid.retract import retract_to_rapid
 from zerorev.program.rapid.source import alike
 from zerorev.program.rapid.write import most_holes, rapid_modules
+from zerorev.program.retract import Retract
 
 __all__ = ["RAPID"]
 
@@ -33,6 +35,10 @@ def _parts(file: ProgramFile) -> tuple[str, ...]:
     return tuple(name + SUFFIX for name in parts_called(file.text, file.name))
 
 
+def _retract(retract: Retract, name: str, version: str) -> ProgramFile:
+    return ProgramFile(name + SUFFIX, retract_to_rapid(retract, name, version))
+
+
 RAPID = Dialect(
     CONTROLLERS["rapid"],
     SUFFIX,
@@ -41,6 +47,7 @@ RAPID = Dialect(
     _write,
     _read,
     _parts,
+    _retract,
     examine=examine,
     most_holes=most_holes,
 )

@@ -25,7 +25,7 @@ from zerorev.program.rapid.names import RAPID_COMMENTS, RAPID_NAMES, part_frame,
 from zerorev.program.rapid.text import aggregate, confdata, external, joint_target, pose, quaternion
 from zerorev.program.refusals import refuse_other_makers
 
-__all__ = ["most_holes", "rapid_modules"]
+__all__ = ["AFTERWARDS", "LEAST_TURN_SPEED", "OUTER_SPEEDS", "SETTINGS", "joined", "most_holes", "rapid_modules"]
 
 LONGEST = 5_000  # lines of a module
 HEAD = 200  # more lines than stand before and after the holes
@@ -75,7 +75,7 @@ def rapid_modules(
     if not parts:
         return {called_so: _module(program, program, called_so, begin, before, after)}
     steps = [*before, *(f"{procedure(part)};" for part in parts), *after]
-    modules = {called_so: _joined(called_so, begin, [], steps)}
+    modules = {called_so: joined(called_so, begin, [], steps)}
     for number, (called_as, part) in enumerate(parts.items(), start=1):
         title = f"Part {number} of {len(parts)} of {called_so}, which starts it: {len(part.holes)} holes"
         begin = part_head(program, title, version, RAPID_COMMENTS, tuple(sentences(program, called_as)))
@@ -96,11 +96,13 @@ def _module(whole: Program, part: Program, name: str, begin: list[str], before: 
         body += _hole(whole, hole, name, f"Hole {hole.number} of {part.listed}")
     if len(part.end):
         body += ["! Away from the last hole", *(_go(whole, joints, name) for joints in part.end)]
-    return _joined(name, begin, [*frames(whole, name), *_data(whole, part)], [*body, AFTERWARDS, *after])
+    return joined(
+        name, begin, [*frames(whole, name, whole.T_base_part), *_data(whole, part)], [*body, AFTERWARDS, *after]
+    )
 
 
-def _joined(name: str, begin: list[str], data: list[str], body: list[str]) -> str:
-    """The text of a module."""
+def joined(name: str, begin: list[str], data: list[str], body: list[str]) -> str:
+    """The text of a module: its comments, its data, and its procedure."""
     lines = [f"  {line}" for line in body]
     return "\n".join([f"MODULE {name}", *begin, *data, f"PROC {procedure(name)}()", *lines, "ENDPROC", "ENDMODULE", ""])
 
