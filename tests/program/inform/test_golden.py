@@ -4,6 +4,7 @@ To write them again after such a review: `ZEROREV_WRITE_GOLDEN=1 pytest tests/pr
 """
 
 import os
+import re
 from dataclasses import replace
 
 import pytest
@@ -33,3 +34,11 @@ def test_parts_and_calls(plan_for):
     calls = Calls((Call("CLAMP"),), (Call("SPIN_ON"),), (Call("SPIN_OFF"),), (Call("UNCLAMP"),))
     called = replace(plan, settings=replace(plan.settings, calls=calls, holes_per_program=2))
     check(export(called, name="PARTS", version="golden"))
+
+
+def test_the_page_shows_what_is_written():
+    page = (GOLDEN.parents[1] / "docs" / "howto" / "controller_inform.md").read_text()
+    shown = [line for line in page.split("\n") if re.match(r"(C\d{5}=|MOV[JL] C\d{5} VJ?=)", line)]
+    golden = (GOLDEN / "MA2010_1.JBI").read_text().split("\n")
+    assert len(shown) == 7
+    assert [line for line in golden if line in shown] == shown
