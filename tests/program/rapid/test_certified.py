@@ -29,6 +29,8 @@ PLANS = {
     **{f"{name} {n}": (lambda name=name, n=n: position_plan(robot_of(name), n, min_rate=SLOWEST))
        for name in ("stand-in", IRB) for n in (1, 2, 3)},
     "IRB 4600": lambda: position_plan(read_robot("abb_irb4600_60_205"), 2, min_rate=SLOWEST),
+    **{f"IRB 6640 {n}": (lambda n=n: position_plan(read_robot("abb_irb6640_185_280"), n, min_rate=SLOWEST))
+       for n in (1, 2)},
     "free legs": lambda: free_leg_plan(read_robot(IRB), min_rate=SLOWEST),
     "free legs, stand-in": lambda: free_leg_plan(stand_in("ABB")),
     "blend": lambda: position_plan(read_robot(IRB), 1, corner="blend", controller="rapid"),

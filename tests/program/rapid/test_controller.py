@@ -112,6 +112,16 @@ def test_a_robot_that_stands_elsewhere_in_the_world(plan):
     assert proven(plan, RAPID.read(exported.files))[0].verdict == "refuted"
 
 
+def test_a_controller_that_counts_from_elsewhere_in_the_arm():
+    robot = replace(read_robot("abb_irb1200_5_90"), base_in_root=(0.1, -0.05, 0.3, 0.1, -0.2, 0.4))
+    plan = position_plan(robot, 1)
+    exported = export(plan)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = Rotation.from_euler("xyz", (0.1, -0.2, 0.4)).as_matrix(), (100, -50, 300)
+    np.testing.assert_allclose(rapid_reader.read(exported.text).part, np.linalg.inv(T), rtol=0, atol=1e-4)
+    assert [proof.reasons for proof in proven(plan, RAPID.read(exported.files))] == [()]
+
+
 def test_every_target_names_the_external_axes(plan):
     outer = with_settings(plan, external_axes=(ExternalAxis("E3", -90.0), ExternalAxis("E1", 1500.0)))
     exported = export(outer)
