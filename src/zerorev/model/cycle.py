@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal
-
-import numpy as np
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
-from zerorev.model._arrays import Array
 from zerorev.model.stated import Choice, Number, check, with_attributes
 from zerorev.model.units import MM
+
+if TYPE_CHECKING:
+    from zerorev.model._arrays import Array
 
 __all__ = ["MOST_BACK", "Cycle", "CycleKind"]
 
@@ -63,6 +63,8 @@ class Cycle:
         Raises:
             InputError: there are too many.
         """
+        import numpy as np  # not with the settings, which the help of the commands reads
+
         if self.kind != "chip_break" or self.depth is None:
             return np.empty(0)
         if depth / self.depth > MOST_PECKS:
