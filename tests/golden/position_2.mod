@@ -8,9 +8,9 @@ MODULE position_2
 ! Spindle   3000 rev/min
 ! Blend     joint moves from 1 mm or less at the target
 ! Holes     1, with 0 joint reversals in all
-! info:     hole position 2: the blend of radius 0.5 mm turns back 0.25 mm short (r/2, a parabolic
-!           blend; the controller's own curve may differ): the hole comes out 0.25 mm less deep;
-!           deepen_corner places the corner that much deeper
+! info:     hole position 2: the blend of the joint moves (0.5 mm to either side, at most) turns
+!           back 0.25 mm short (r/2, a parabolic blend; the controller's own curve may differ): the
+!           hole comes out 0.25 mm less deep; deepen_corner places the corner that much deeper
 ! info:     the twist changes the speed of a right-hand drill by +5.93 rev/min at most (0.20% of
 !           3000), in the retract of hole position 2
 ! info:     the moves of all axes from hole to hole are checked against the surface of the part

@@ -10,9 +10,9 @@ MODULE position_3
 ! Holes     1, with 0 joint reversals in all
 ! warning:  hole position 3: lead-in of 0.429 mm instead of 5 mm: further back A1 would turn the
 !           other way
-! info:     hole position 3: the blend of radius 0.5 mm turns back 0.25 mm short (r/2, a parabolic
-!           blend; the controller's own curve may differ): the hole comes out 0.25 mm less deep;
-!           deepen_corner places the corner that much deeper
+! info:     hole position 3: the blend of the joint moves (0.5 mm to either side, at most) turns
+!           back 0.25 mm short (r/2, a parabolic blend; the controller's own curve may differ): the
+!           hole comes out 0.25 mm less deep; deepen_corner places the corner that much deeper
 ! info:     the twist changes the speed of a right-hand drill by +0.689 rev/min at most (0.02% of
 !           3000), in the lead-in of hole position 3
 ! info:     the moves of all axes from hole to hole are checked against the surface of the part

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import yaml
 
-from zerorev.errors import InputError
+from zerorev.errors import InputError, NotExportableError
 from zerorev.files.io import read_job
 from zerorev.planning.job import plan_job
 from zerorev.program.as_exported import as_exported
@@ -95,3 +95,24 @@ class TestCountersink:
     def test_with_a_measured_depth_there_is_none(self, job):
         plan = plan_job(job(countersink={"diameter_mm": 9.5}, blend_shortfall_mm=0.4))
         assert not [each for each in plan.holes[0].findings if each.kind == "countersink"]
+
+
+class TestJointSpeeds:
+    def test_a_feed_that_a_joint_cannot_follow_is_said_of_the_plan(self, job):
+        """And refused by export."""
+        plan = plan_job(job(feed_mm_s={"plunge": 400, "retract": 2000}))
+        found = [each for each in plan.holes[0].findings if each.kind == "joint_speed"]
+        assert {each.level for each in found} == {"warning"}
+        with pytest.raises(NotExportableError) as refusal:
+            export(plan)
+        for each in found:
+            assert any(each.message.partition(" would")[0] in reason for reason in refusal.value.reasons)
+
+    def test_the_feed_that_is_named_fits(self, job):
+        (finding, *_) = [
+            each for each in plan_job(job(feed_mm_s={"retract": 2000})).holes[0].findings if each.kind == "joint_speed"
+        ]
+        fits = float(finding.message.rpartition(" is ")[2].removesuffix(" mm/s"))
+        slower = plan_job(job(feed_mm_s={"retract": fits}))
+        assert not [each for each in slower.holes[0].findings if each.kind == "joint_speed"]
+        export(slower)

@@ -174,7 +174,7 @@ def test_from_a_drag_that_reverses_joint_4_to_the_program_of_the_command_line(re
     ready.get_by_test_id("plan").click()
     expect(ready.get_by_test_id("outcome")).to_be_visible(timeout=120_000)
     _, plan = saved(ready, lambda: from_menu(ready, "download-plan"))
-    from_menu(ready, "download-krl")
+    from_menu(ready, "download-program")
     expect(ready.get_by_test_id("preflight")).to_be_visible()
     name, program = saved(ready, lambda: ready.get_by_test_id("save-program").click())
 

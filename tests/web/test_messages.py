@@ -77,7 +77,7 @@ def test_all_that_is_said_is_said_in_full_and_can_be_read(demo_page, tmp_path):
     assert [hole["id"] for hole in plan["holes"]] == ["position_1"]
     assert [finding["kind"] for finding in plan["findings"]] == ["unfinished", "tool_turn"]
 
-    from_menu(page, "download-krl")
+    from_menu(page, "download-program")
     dialog = page.get_by_test_id("preflight")
     expect(dialog).to_contain_text("The program drills 1 of 3 holes.", timeout=60_000)
     expect(dialog).to_contain_text("missing: holes position_2, position_3")

@@ -29,6 +29,7 @@ from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.out_of_reach import shift_into_reach
 from zerorev.planning.tool_turn import hole_turn
+from zerorev.program.joint_speeds import pieces_of, too_fast
 from zerorev.program.ways import Way
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.chip_break import chip_breaking
@@ -304,6 +305,8 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     found += hole_turn(answer, way.lead_in)
     found += load_findings(drilling, settings, answer)
     found += corner_findings(settings, answer)
+    # export refuses it; here it is known while the feed can still be chosen
+    found += too_fast(drilling, answer.motion.branch, pieces_of(settings, answer.motion), "warning")
     found += countersink_findings(settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)

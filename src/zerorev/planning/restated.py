@@ -44,7 +44,11 @@ __all__ = ["Checked", "check_hole", "check_plan"]
 
 BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
 OF_A_PROOF = "tolerance"  # one that a certificate adds
-LATER: tuple[FindingKind, ...] = ("near_limit", "tool_turn")  # which files of an older version do not have
+LATER: tuple[FindingKind, ...] = (
+    "near_limit",
+    "tool_turn",
+    "joint_speed",
+)  # which files of an older version do not have
 
 
 @dataclass(frozen=True)

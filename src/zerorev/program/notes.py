@@ -102,8 +102,11 @@ def _blend(program: Program) -> tuple[Finding, ...]:
 def _depth_lost(program: Program, depth: CornerDepth) -> str:
     if depth.blend == 0:
         return ""
-    law = program.settings.turning.law
-    says = f"the blend of radius {depth.blend * 1e3:.4g} mm turns back {depth.shortfall * 1e3:.4g} mm short ({law})"
+    turning = program.settings.turning
+    what = f"the blend of radius {depth.blend * 1e3:.4g} mm"
+    if turning.kind == "joint":
+        what = f"the blend of the joint moves ({depth.blend * 1e3:.4g} mm to either side, at most)"
+    says = f"{what} turns back {depth.shortfall * 1e3:.4g} mm short ({turning.law})"
     if depth.lost > NOTICEABLE:
         option = "" if depth.below > 0 else "; deepen_corner places the corner that much deeper"
         return f"{says}: the hole comes out {depth.lost * 1e3:.4g} mm less deep{option}"

@@ -10,15 +10,14 @@ from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
-from zerorev.motion.joint_path import outward_rates
 from zerorev.motion.kinematics import forward, tcp_pose
-from zerorev.program.neutral import HoleProgram, Move, Program
+from zerorev.program.joint_speeds import Piece, too_fast
+from zerorev.program.neutral import HoleProgram, Program
 from zerorev.program.notes import notes, segments, tool_turn, turn_speed
 from zerorev.program.waypoints import GREATEST_TURN
 
 __all__ = ["preflight"]
 
-SAMPLES = 401  # per move
 USUAL_TURN_SPEED = float(np.deg2rad(200.0))  # [rad/s] what KUKA's $VEL.ORI1 and $VEL.ORI2 usually are
 ON_POSE = (1e-5, float(np.deg2rad(0.01)))  # [m], [rad] between a plan's joints and its poses
 ROUND_OFF = 1e-9
@@ -83,45 +82,12 @@ def _beyond(robot: Robot, joints: Array, margin: float) -> npt.NDArray[np.bool_]
 
 
 def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding, ...]:
-    """Joint speeds at the job's feeds: one error a leg, at the joint that is farthest beyond its speed."""
-    allowed = plan.robot.limits.speed
-    worst: dict[str, tuple[float, int, float, float]] = {}  # leg -> share of the speed, joint, rate, feed
-    for standoff, psi, move in segments(hole):
-        rates = _rates(plan, hole_plan, standoff, psi, move)
-        if np.isnan(rates).any():
-            message = f"a singularity on the {move.leg}: the joint speeds are undefined"
-            return (Finding("error", "joint_speed", message, hole.id),)
-        peak = np.abs(rates).max(axis=0)
-        share = peak * move.feed / allowed
-        joint = int(np.argmax(share))
-        if share[joint] > max(1.0 + ROUND_OFF, worst.get(move.leg, (0.0,))[0]):
-            worst[move.leg] = (float(share[joint]), joint, float(peak[joint]), move.feed)
-    return tuple(
-        Finding(
-            "error",
-            "joint_speed",
-            f"{plan.robot.joint_names[joint]} would have to turn at {np.rad2deg(rate * feed):.1f} deg/s on the {leg} "
-            f"at a feed of {feed * 1e3:g} mm/s, and can turn at {np.rad2deg(allowed[joint]):.1f} deg/s; the greatest "
-            f"feed that fits is {_floored(allowed[joint] / rate * 1e3)} mm/s",
-            hole.id,
-        )
-        for leg, (_, joint, rate, feed) in worst.items()
-    )
-
-
-def _rates(plan: Plan, hole_plan: HolePlan, standoff: float, psi: float, move: Move) -> Array:
-    """Rates d theta / d path along one move [rad/m], shape (N, 6); the sign is that of moving out."""
+    """Joint speeds at the job's feeds."""
     assert hole_plan.motion is not None
-    s = np.linspace(standoff, move.standoff, SAMPLES)
-    spin = np.linspace(psi, move.psi, SAMPLES)
-    slope = (move.psi - psi) / (move.standoff - standoff)
-    return outward_rates(Drilling.of(plan, hole_plan.hole), hole_plan.motion.branch, s, spin, slope)
-
-
-def _floored(feed_mm_s: float) -> str:
-    """A feed with three digits, rounded down, so that it does fit."""
-    digits = 2 - int(np.floor(np.log10(feed_mm_s)))
-    return f"{np.floor(feed_mm_s * 10.0**digits) / 10.0**digits:.{max(digits, 0)}f}"
+    pieces = [
+        Piece(move.leg, (standoff, psi), (move.standoff, move.psi), move.feed) for standoff, psi, move in segments(hole)
+    ]
+    return too_fast(Drilling.of(plan, hole_plan.hole), hole_plan.motion.branch, pieces)
 
 
 def _turns(hole: HoleProgram) -> tuple[Finding, ...]:

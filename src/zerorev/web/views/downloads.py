@@ -35,16 +35,16 @@ def downloads(session: Session, work: Work) -> None:
         ui.menu().props('aria-label="download"'),
     ):
         _entry("Plan (JSON)", "download-plan", lambda: _whole(session, "plan", lambda: _plan(session)))
-        _entry("Robot program (KRL) …", "download-krl", lambda: program_download(session, work))
+        _entry("Robot program …", "download-program", lambda: program_download(session, work))
         _entry(
-            "Robot program from this hole on (KRL) …",
-            "download-krl-from",
+            "Robot program from this hole on …",
+            "download-program-from",
             lambda: part_download(session, work, rest=True),
         )
         _entry(
-            "Robot program of this hole (KRL) …", "download-krl-only", lambda: part_download(session, work, rest=False)
+            "Robot program of this hole …", "download-program-only", lambda: part_download(session, work, rest=False)
         )
-        _entry("Way out of this hole after a stop (KRL) …", "download-krl-out", lambda: way_out_download(session, work))
+        _entry("Way out of this hole after a stop …", "download-program-out", lambda: way_out_download(session, work))
         _entry("Figures of this hole (zip)", "download-figures", lambda: _figures(session, work, one=True))
         _entry(
             "Figures of all holes (zip)",

@@ -1,0 +1,98 @@
+"""Whether the joints can turn as fast as the feeds ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from zerorev.model.finding import Finding, Level
+from zerorev.model.plan import Motion
+from zerorev.model.settings import Settings
+from zerorev.motion.drilling import Drilling
+from zerorev.motion.joint_path import outward_rates
+
+__all__ = ["Piece", "pieces_of", "too_fast"]
+
+SAMPLES = 401  # of a piece
+ROUND_OFF = 1e-9
+
+
+class Piece(NamedTuple):
+    """A straight piece of a motion in the twist plane.
+
+    Attributes:
+        leg: which part of the motion it belongs to.
+        begin: stand-off [m] and spin [rad].
+        end: stand-off [m] and spin [rad].
+        feed: of the tip [m/s].
+    """
+
+    leg: str
+    begin: tuple[float, float]
+    end: tuple[float, float]
+    feed: float
+
+
+def pieces_of(settings: Settings, motion: Motion) -> list[Piece]:
+    """The pieces of a motion with their feeds.
+
+    Args:
+        settings: with the feeds.
+        motion: of a hole.
+    """
+    profile = motion.profile
+    points = list(zip(profile.standoff.tolist(), profile.psi.tolist(), strict=True))
+    return [
+        Piece(
+            "plunge" if k < profile.corner else "retract",
+            points[k],
+            points[k + 1],
+            settings.feed_plunge if k < profile.corner else settings.feed_retract,
+        )
+        for k in range(len(points) - 1)
+    ]
+
+
+def too_fast(drilling: Drilling, branch: int, pieces: Iterable[Piece], level: Level = "error") -> tuple[Finding, ...]:
+    """Joints that cannot turn as fast as asked for: one finding a leg, of the joint that is farthest beyond its speed.
+
+    Args:
+        drilling: robot, tool and hole.
+        branch: 0..7.
+        pieces: of the motion.
+        level: of the findings.
+    """
+    robot, hole = drilling.robot, drilling.hole.id
+    allowed = robot.limits.speed
+    worst: dict[str, tuple[float, int, float, float]] = {}  # leg -> share of the speed, joint, rate, feed
+    for piece in pieces:
+        (s0, psi0), (s1, psi1) = piece.begin, piece.end
+        slope = (psi1 - psi0) / (s1 - s0)
+        rates = outward_rates(drilling, branch, np.linspace(s0, s1, SAMPLES), np.linspace(psi0, psi1, SAMPLES), slope)
+        if np.isnan(rates).any():
+            message = f"a singularity on the {piece.leg}: the joint speeds are undefined"
+            return (Finding(level, "joint_speed", message, hole),)
+        peak = np.abs(rates).max(axis=0)
+        share = peak * piece.feed / allowed
+        joint = int(np.argmax(share))
+        if share[joint] > max(1.0 + ROUND_OFF, worst.get(piece.leg, (0.0,))[0]):
+            worst[piece.leg] = (float(share[joint]), joint, float(peak[joint]), piece.feed)
+    return tuple(
+        Finding(
+            level,
+            "joint_speed",
+            f"{robot.joint_names[joint]} would have to turn at {np.rad2deg(rate * feed):.1f} deg/s on the {leg} "
+            f"at a feed of {feed * 1e3:g} mm/s, and can turn at {np.rad2deg(allowed[joint]):.1f} deg/s; the greatest "
+            f"feed that fits is {_floored(allowed[joint] / rate * 1e3)} mm/s",
+            hole,
+        )
+        for leg, (_, joint, rate, feed) in worst.items()
+    )
+
+
+def _floored(feed_mm_s: float) -> str:
+    """A feed with three digits, rounded down, so that it does fit."""
+    digits = 2 - int(np.floor(np.log10(feed_mm_s)))
+    return f"{np.floor(feed_mm_s * 10.0**digits) / 10.0**digits:.{max(digits, 0)}f}"
