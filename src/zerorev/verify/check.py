@@ -24,6 +24,7 @@ from zerorev.verify.claims import (
     score_claimed,
 )
 from zerorev.verify.measure import reversals, reversals_through
+from zerorev.verify.mix import mix_holds
 from zerorev.verify.path import Track, around, blend, follow, joined, legs, residual
 from zerorev.verify.sound import continuity, greatest_step, least_room, limit_distances, limits, on_the_axis, reach
 
@@ -96,6 +97,8 @@ def verify_hole(
         joints = follow(robot, tool, hole, curve, posture, track.joints[before])
         piece = joined(track, Track(curve, joints), before, behind)
         failures += blend_keeps(robot, where, turned, reversals_through(track, turned, piece, before, behind))
+        if not settings.curve_known:
+            failures += mix_holds(robot, tool, hole, motion.profile, motion.joints, k, radius, "one_way")
         examined.append((where, piece))
         on_blends += curve.psi.size
 
