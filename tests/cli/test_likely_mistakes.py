@@ -229,3 +229,10 @@ def test_frames_as_kuka_has_them(capsys, tmp_path):
     assert "X of the tool points along the drill" in said
     (tmp_path / "job.yaml").write_text(text.replace("{x: 500,", "{x: 500, xyz_mm: [1, 2, 3],"))
     assert "unknown key 'x'" in refused(capsys, "plan", tmp_path / "job.yaml")
+
+
+def test_a_controller_of_another_maker(capsys, tmp_path):
+    text = (PRACTICE / "c18_abc/abc.yaml").read_text(encoding="utf-8")
+    (tmp_path / "job.yaml").write_text(text + "controller: rapid\n")
+    found, _ = warnings(capsys, tmp_path / "job.yaml")
+    assert any("controller rapid is ABB's" in each and "is by KUKA" in each for each in found), found

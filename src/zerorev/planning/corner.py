@@ -79,6 +79,9 @@ def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]
                 "them nearer"
             )
             return (Finding("warning", "corner", message, answer.hole.id),)
+        if corner is not None and corner.kind == "stop":
+            message = "the program stops at the target, with all joints at rest: each has to break loose there again"
+            return (Finding("warning", "corner", message, answer.hole.id),)
         return ()
     message = (
         f"no joint moves at the corner stay within {settings.corner_tolerance * 1e3:g} mm and "

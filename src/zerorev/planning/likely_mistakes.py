@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of
+from zerorev.model.corner import controller_of, known_controller
 from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
@@ -22,7 +23,9 @@ from zerorev.planning.same_holes import same_holes
 
 __all__ = ["GUESSES", "likely_mistakes", "points_back"]
 
-GUESSES: tuple[FindingKind, ...] = ("units", "normals", "tool_direction", "frame_angles", "duplicate", "base_column")
+GUESSES: tuple[FindingKind, ...] = (
+    "units", "normals", "tool_direction", "frame_angles", "duplicate", "base_column", "controller",
+)  # fmt: skip
 
 SMALLEST_ARM = 0.2  # [m] lengths added up: a quarter of those of the smallest arms that are sold
 FEWEST_DEGREES = np.deg2rad(10.0)  # no arm has all of its limits within
@@ -58,9 +61,20 @@ def likely_mistakes(job: Job) -> tuple[Finding, ...]:
         ("tool_direction", _tool_direction(robot, tool)),
         ("frame_angles", _tool_angles(robot, tool)),
         ("base_column", _in_the_column(robot, holes, job.T_base_part)),
+        ("controller", _controller(robot, settings)),
         ("duplicate", iter(()) if _in_one_place(holes) else same_holes(holes)),
     )
     return tuple(Finding("warning", kind, message) for kind, messages in checks for message in messages)
+
+
+def _controller(robot: Robot, settings: Settings) -> Iterator[str]:
+    known, own = known_controller(settings.controller), controller_of(robot.manufacturer)
+    if settings.controller is not None and known is not own:
+        yield (
+            f"the controller {settings.controller} is {known.maker}'s, and the robot {robot.name} is by "
+            f"{robot.manufacturer.strip() or 'a maker that its file does not name'}: no program of this plan can be "
+            f"written (controller{'' if own is None else f': {own.name}'}, or manufacturer in the robot's file)"
+        )
 
 
 def _robot_units(robot: Robot) -> Iterator[str]:
