@@ -134,5 +134,8 @@ def scaled(drilled, factor):
             blend=settings.blend * factor,
             blend_shortfall=shortfall,
             lead_in=settings.lead_in * factor,
+            corner_tolerance=settings.corner_tolerance * factor,
+            feed_plunge=settings.feed_plunge * factor,
+            feed_retract=settings.feed_retract * factor,
         ),
     )

@@ -95,7 +95,7 @@ class TestCurve:
 
     def test_a_corner_placed_deeper_takes_its_share(self, robot, tool):
         deeper = Settings(min_rate=0.0, blend=0.01, deepen_corner=True)
-        assert deeper.corner == -0.005
+        assert deeper.corner_standoff == -0.005
         curve = offset_curve(robot, tool, [POSITION_1], deeper, 0.06)
         there = replace(POSITION_1, target=POSITION_1.target + 0.005 * POSITION_1.direction)
         exact = deepest_stroke(robot, with_offset(robot, tool, 0.06), there, OFF).depth
