@@ -168,7 +168,7 @@ class Settings:
             MM,
             above=0,
             note="The axis may tilt by 0.01 deg",
-            label="tip off the axis there",
+            label="joint moves leave the axis by",
         ),
     ] = 20e-6
     blend: Annotated[
@@ -279,7 +279,7 @@ class Settings:
             key="last_mm",
             least=0,
             note="Counted from the target; at a corner that is placed deeper, that much more",
-            label="last of the way in",
+            label="last of the way in, with its own feed",
         ),
     ] = 0.0
     breakthrough_feed: Annotated[
@@ -291,7 +291,7 @@ class Settings:
             key="feed_mm_s",
             none="that of the plunge",
             above=0,
-            label="its feed",
+            label="feed of the last of the way in",
         ),
     ] = None
     sink_diameter: Annotated[
@@ -309,7 +309,7 @@ class Settings:
     ] = None
     sink_angle: Annotated[
         float,
-        Number("its full angle", DEG, nest=SINK, key="angle_deg", least=10, to=170, label="its angle"),
+        Number("its full angle", DEG, nest=SINK, key="angle_deg", least=10, to=170, label="angle of the countersink"),
     ] = math.radians(100.0)
     spindle_rpm: Annotated[
         float | None,
