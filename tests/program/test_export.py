@@ -13,7 +13,6 @@ from zerorev.errors import InputError, NotExportableError
 from zerorev.files.io import read_robot, write_plan
 from zerorev.model.corner import CONTROLLERS
 from zerorev.model.finding import Finding
-from zerorev.program.dialect import ProgramFile
 from zerorev.program.dialects import DIALECTS, read_program
 from zerorev.program.export import export
 from zerorev.program.krl.names import KRL_NAMES, krl_label
@@ -384,15 +383,15 @@ def test_on_two_processes_the_program_is_the_same_and_progress_is_reported_hole_
 def test_a_program_of_several_files(published, plan_of, monkeypatch, tmp_path):
     """In a language that wants a file for the data beside the one that is started."""
 
-    def write(program, name, findings, version):
-        return ProgramFile(f"{name}.main", "begin\n"), ProgramFile(f"{name}.data", "points\n")
+    def texts(program, name, findings, version):
+        return {name: "begin\n", f"{name}_data": "points\n"}
 
-    monkeypatch.setitem(DIALECTS, "krl", replace(DIALECTS["krl"], suffix=".main", write=write))
+    monkeypatch.setitem(DIALECTS, "krl", replace(DIALECTS["krl"], suffix=".main", texts=texts))
     plan = tmp_path / "plan.json"
     write_plan(plan_of(published(1)), plan)
     assert main(["export", str(plan), "-o", str(tmp_path / "out.main")]) == 0
     written = {path.name: path.read_text() for path in tmp_path.iterdir() if path != plan}
-    assert written == {"out.main": "begin\n", "out.data": "points\n"}
+    assert written == {"out.main": "begin\n", "out_data.main": "points\n"}
 
 
 @pytest.mark.parametrize("name", ["program.txt", "program"])

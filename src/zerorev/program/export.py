@@ -194,15 +194,15 @@ def retract_program(
             brought out straight.
     """
     dialect = dialect_for(plan, controller)
-    if dialect.retract is None:
+    if dialect.retract_text is None:
         why = f"a program that brings the drill out of a hole is not offered in {dialect.controller.language}"
         raise NotExportableError((why,))
     called = dialect.program_name(name or retract_name(plan, hole_id))
     number_of(plan, hole_id, "retract")
     way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)
     _refuse_errors(preflight(way.program, plan))
-    file = dialect.retract(way, called, version or installed_version("zerorev"))
-    return Exported((file,), way.findings, called, 1)
+    text = dialect.retract_text(way, called, version or installed_version("zerorev"))
+    return Exported((dialect.file(called, text),), way.findings, called, 1)
 
 
 def retract_name(plan: Plan, hole_id: str) -> str:

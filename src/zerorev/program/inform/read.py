@@ -11,13 +11,12 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import NoReturn
 
-from zerorev.errors import InputError
-from zerorev.model.written import Pace, Statement, Word, WrittenHole, WrittenJoints, WrittenMove, WrittenProgram
-from zerorev.program.source import ascii_lines
+from zerorev.model.written import Pace, Statement, Word, WrittenJoints, WrittenProgram
+from zerorev.program.reading import Reading, Starter, Words
+from zerorev.program.source import alike_but, ascii_lines
 
-__all__ = ["alike", "read_job"]
+__all__ = ["alike", "read_job", "read_starter"]
 
 NAME = r"[A-Z0-9_-]{1,32}"
 CALLED = r"[A-Za-z0-9_-]{1,32}"
@@ -30,7 +29,7 @@ INSTRUCTIONS = "MOVJ C00000 VJ=0.00 PL=0 or MOVL C00000 V=0.0 PL=0 (PL 0 to 8), 
 
 
 def read_job(text: str, file: str = "job") -> WrittenProgram:
-    """Read the text of a job; one that only calls its parts has no holes.
+    """Read the text of a job.
 
     Args:
         text: of the file.
@@ -39,7 +38,20 @@ def read_job(text: str, file: str = "job") -> WrittenProgram:
     Raises:
         InputError: a line that `export` does not write; the message has its number.
     """
-    return _Reading(file).read(text)
+    reading = _Reading(file)
+    reading.read(text)
+    return reading.end()
+
+
+def read_starter(text: str, file: str = "job") -> Starter | None:
+    """A job that moves nothing itself, but calls others; None: any other.
+
+    Raises:
+        InputError: as `read_job`.
+    """
+    reading = _Reading(file)
+    reading.read(text)
+    return None if reading.positions else (reading.name, tuple(reading.head))
 
 
 def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
@@ -49,59 +61,40 @@ def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
         found: words of a program's statement.
         wanted: as `export` writes it.
     """
-    if len(found) != len(wanted):
-        return False
     moves = wanted[0] in ("MOVJ", "MOVL")
-    return all(
-        own == other
-        or (
-            moves and 1 <= at <= 6 and isinstance(own, Decimal) and isinstance(other, Decimal) and abs(own - other) <= 1
-        )
-        for at, (own, other) in enumerate(zip(found, wanted, strict=True))
-    )
+    return alike_but(found, wanted, lambda at, own, other: moves and 1 <= at <= 6 and abs(own - other) <= 1)
 
 
 @dataclass
-class _Hole:
-    line: int
-    start: WrittenJoints
-    way: tuple[Statement, ...]
-    moves: list[WrittenMove] = field(default_factory=list)
-    statements: list[Statement] = field(default_factory=list)
-
-
-@dataclass
-class _Reading:
+class _Reading(Reading):
     """What is known up to a line."""
 
-    file: str
+    accepted, stop = "a job as zerorev exports it", "PL=0"
+
     lines: list[tuple[int, str]] = field(default_factory=list)
-    line: int = 1
     positions: list[tuple[int, tuple[Decimal, ...]]] = field(default_factory=list)
     used: int = 0
-    head: list[Statement] = field(default_factory=list)
-    hole: _Hole | None = None
-    holes: list[WrittenHole] = field(default_factory=list)
-    tail: tuple[Statement, ...] = ()
 
-    def read(self, text: str) -> WrittenProgram:
+    def read(self, text: str) -> None:
         self.lines = list(ascii_lines(text, self.refuse_at))
         while self.lines and not self.lines[-1][1]:
             self.lines.pop()
         self.lines.reverse()
-        name = self.begin()
+        self.begin()
         while (source := self.take()) != "END":
             self.instruction(source)
         if self.lines:
             self.take()
             self.refuse("a line after END", accepted="END as the last line")
-        return self.end(name)
+        if self.used < len(self.positions):
+            self.refuse(f"no move uses C{self.used:05d}", accepted="each position in one move, in order")
+        self.close_last()
 
-    def begin(self) -> str:
+    def begin(self) -> None:
         """The head of the job, and its positions."""
         self.expect("/JOB")
-        name = self.expect(rf"//NAME ({NAME})", "//NAME and a name of at most 32 capitals, digits, - and _")[1]
-        self.note(("//NAME", name), f"//NAME {name}")
+        self.name = self.expect(rf"//NAME ({NAME})", "//NAME and a name of at most 32 capitals, digits, - and _")[1]
+        self.note(("//NAME", self.name), f"//NAME {self.name}")
         self.expect("//POS")
         shown = "///NPOS 0,0,0,0,0,0, the first number being that of the positions"
         count = int(self.expect(r"///NPOS (0|[1-9]\d{0,4}),0,0,0,0,0", shown)[1])
@@ -121,21 +114,20 @@ class _Reading:
         self.expect("///ATTR SC,RW")
         self.expect("///GROUP1 RB1")  # the six axes of the one robot
         self.expect("NOP")
-        return name
 
     def instruction(self, source: str) -> None:
         """One line between NOP and END."""
         if source.startswith("'"):
             self.stand_still("a comment")
         elif (move := MOVE.fullmatch(source)) is not None:
-            self.move(move)
+            self.moved(move)
         elif (call := CALL.fullmatch(source)) is not None:
             self.stand_still(f"CALL JOB:{call[1]}")
             self.note(("CALL", "JOB:", call[1]), source)
         else:
             self.refuse(f"'{source[:80]}' is not an instruction that zerorev writes", accepted=INSTRUCTIONS)
 
-    def move(self, found: re.Match[str]) -> None:
+    def moved(self, found: re.Match[str]) -> None:
         kind, number, tag, printed, level = found.groups()
         if tag != {"MOVJ": "VJ", "MOVL": "V"}[kind]:
             self.refuse(f"{tag}= of a {kind}", accepted="MOVJ with VJ= [%], MOVL with V= [mm/s]")
@@ -149,53 +141,23 @@ class _Reading:
             )
         at, counts = self.positions[self.used]
         self.used += 1
-        words: tuple[Word, ...] = (kind, *counts, f"{tag}=", speed, "PL=", Decimal(level))
+        words: Words = (kind, *counts, f"{tag}=", speed, "PL=", Decimal(level))
         source = f"{found[0]} with C{number}={','.join(map(str, counts))} (line {at})"
         if kind == "MOVJ" and level == "0":
             self.go(WrittenJoints(counts, "pulses"))
-        elif self.hole is None:
-            self.refuse("a move of a hole before the MOVJ with PL=0 that leads to it")
         else:
+            self.need_hole("a move of a hole before the MOVJ with PL=0 that leads to it")
             pace = Pace(speed.scaleb(-3)) if kind == "MOVL" else Pace(speed, "%")
             blend = None if level != "0" else Decimal(0)
-            end = WrittenJoints(counts, "pulses")
-            self.hole.moves.append(WrittenMove(self.line, end, pace, blend, linear=kind == "MOVL"))
+            self.move(WrittenJoints(counts, "pulses"), pace, blend, linear=kind == "MOVL")
         self.note(words, source)
 
-    def go(self, start: WrittenJoints) -> None:
-        """A move of all axes with a stop: to a point on the way, if another follows before the moves of a hole."""
-        before: tuple[Statement, ...] = ()
-        if self.hole is not None and not self.hole.moves:
-            before = (*self.hole.way, *self.hole.statements)
-        else:
-            self.close()
-        self.hole = _Hole(self.line, start, before)
+    def tool_and_base(self) -> tuple[None, None]:
+        return None, None
 
-    def stand_still(self, what: str) -> None:
-        """Refuse what may hold the look-ahead up where the motion must not stop."""
-        if self.hole is not None and self.hole.moves and not self.hole.moves[-1].stops:
-            self.refuse(f"{what} between blended moves")
-
-    def close(self) -> None:
-        """End the hole that is being read."""
-        hole, self.hole = self.hole, None
-        if hole is None:
-            return
-        if not hole.moves[-1].stops:
-            self.refuse(f"the last move of a hole (line {hole.moves[-1].line}) is blended", accepted="PL=0")
-        self.holes.append(WrittenHole(hole.line, hole.start, tuple(hole.moves), tuple(hole.statements), hole.way))
-
-    def end(self, name: str) -> WrittenProgram:
-        if self.used < len(self.positions):
-            self.refuse(f"no move uses C{self.used:05d}", accepted="each position in one move, in order")
-        if self.hole is not None and not self.hole.moves:
-            self.tail, self.hole = (*self.hole.way, *self.hole.statements), None
-        self.close()
-        return WrittenProgram(name, None, None, tuple(self.holes), tuple(self.head), self.tail)
-
-    def note(self, words: tuple[Word, ...], source: str) -> None:
+    def note(self, words: Words, source: str) -> None:
         """Keep what a line tells the controller."""
-        (self.head if self.hole is None else self.hole.statements).append(Statement(words, self.line, source))
+        self.keep(Statement(words, self.line, source))
 
     def take(self) -> str:
         """The next line."""
@@ -210,10 +172,3 @@ class _Reading:
         if (found := re.compile(form, re.ASCII).fullmatch(source)) is None:
             self.refuse(f"'{source[:80]}' is not the line that a job has here", accepted=shown or form)
         return found
-
-    def refuse(self, what: str, *, accepted: str = "a job as zerorev exports it") -> NoReturn:
-        raise InputError(what, where=f"{self.file}, line {self.line}", accepted=accepted)
-
-    def refuse_at(self, line: int, what: str) -> NoReturn:
-        self.line = line
-        self.refuse(what)

@@ -43,7 +43,6 @@ MOST_LINES, MOST_POSITIONS = 2_000, 9_500  # of one job
 
 def inform_jobs(
     program: Program,
-    *,
     name: str | None = None,
     findings: tuple[Finding, ...] | None = None,
     version: str | None = None,

@@ -8,24 +8,15 @@ is required here, independent of the plan: how the tool turns, in which frames, 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from decimal import Decimal
-from typing import NoReturn
 
-from zerorev.errors import InputError
-from zerorev.model.written import (
-    Pace,
-    Statement,
-    Word,
-    WrittenFrame,
-    WrittenHole,
-    WrittenJoints,
-    WrittenMove,
-    WrittenProgram,
-)
+from zerorev.model.written import Pace, Statement, WrittenFrame, WrittenJoints, WrittenProgram
 from zerorev.program.krl.names import KEPT
-from zerorev.program.krl.source import shape, statements, words
+from zerorev.program.krl.source import KRL_WORDS, statements
+from zerorev.program.reading import Forms, Numbers, SourceReading, Starter, Words
+from zerorev.program.source import Refuse, are_literals, shape
 
 __all__ = ["read_krl", "read_starter"]
 
@@ -42,66 +33,28 @@ def read_krl(text: str, file: str = "program") -> WrittenProgram:
     Raises:
         InputError: a statement that `export` does not write; the message has its line.
     """
-    reading = _Reading(file)
-    for statement in statements(text, reading.refuse_at):
-        reading.take(statement)
-    return reading.end()
+    return _Reading(file).read(text)
 
 
-def read_starter(text: str, file: str = "program") -> tuple[str, tuple[Statement, ...]] | None:
-    """Name and statements of a program that sets and moves nothing itself, but calls others; None: of any other.
+def read_starter(text: str, file: str = "program") -> Starter | None:
+    """A program that sets and moves nothing itself, but calls others; None: any other.
 
     Raises:
         InputError: as `read_krl`.
     """
-    reading = _Reading(file)
-    for statement in statements(text, reading.refuse_at):
-        reading.take(statement)
-        if reading.settings or reading.hole:
-            return None
-    return (reading.name, tuple(reading.head)) if reading.ended else None
+    return _Reading(file).starter(text)
 
 
 @dataclass
-class _Hole:
-    line: int
-    start: WrittenJoints
-    way: tuple[Statement, ...] = ()
-    moves: list[WrittenMove] = field(default_factory=list)
-    statements: list[Statement] = field(default_factory=list)
+class _Reading(SourceReading):
+    opening, closing, stop = "DEF", "END", "no C_DIS"
 
+    @property
+    def forms(self) -> Forms:
+        return FORMS
 
-@dataclass
-class _Reading:
-    """What is known up to a statement."""
-
-    file: str
-    line: int = 0
-    name: str = ""
-    ended: bool = False
-    settings: dict[str, tuple[Decimal, ...]] = field(default_factory=dict)
-    head: list[Statement] = field(default_factory=list)
-    hole: _Hole | None = None
-    holes: list[WrittenHole] = field(default_factory=list)
-    tail: tuple[Statement, ...] = ()
-
-    def take(self, statement: Statement) -> None:
-        """One statement of the file."""
-        self.line = statement.line
-        if self.ended:
-            self.refuse(f"'{statement.source}' after END")
-        if (statement.words[0] == "DEF") == bool(self.name):
-            self.refuse("a second program" if self.name else f"'{statement.source}' before DEF")
-        if not self.name:
-            self.begin(statement)
-        elif (form := FORMS.get(_any_variable(shape(statement.words)))) is not None:
-            form(self, _name(statement.words), tuple(word for word in statement.words if isinstance(word, Decimal)))
-        elif is_call(statement.words):
-            self.stand_still(f"{statement.source} is called")
-        else:
-            self.refuse_form(statement)
-        if not self.ended:
-            (self.head if self.hole is None else self.hole.statements).append(statement)
+    def statements(self, text: str, refuse: Refuse) -> Iterator[Statement]:
+        return statements(text, refuse)
 
     def begin(self, statement: Statement) -> None:
         name = statement.source[3:].rstrip("() ").strip()
@@ -109,120 +62,75 @@ class _Reading:
             self.refuse(f"'{statement.source}'", accepted="DEF name ( ), of at most 24 letters, digits and underscores")
         self.name = name
 
-    def reset(self, name: str, _: tuple[Decimal, ...]) -> None:
+    def calls(self, words: Words) -> bool:
+        name = words[0]
+        return (
+            isinstance(name, str)
+            and NAME.fullmatch(name) is not None
+            and name not in KEPT
+            and (words[1:2], words[-1:]) == (("(",), (")",))
+            and are_literals(words[2:-1], ("TRUE", "FALSE"), marks='#"')
+        )
+
+    def tool_and_base(self) -> tuple[WrittenFrame, WrittenFrame]:
+        return _frame(self.settings["$TOOL"]), _frame(self.settings["$BASE"])
+
+    def reset(self, words: Words, _: Numbers) -> None:
         if self.settings.keys() - {"EXT BAS"}:
             self.refuse("INITMOV would undo what is set before it")
-        self.settings[name] = ()
+        self.settings[_name(words)] = ()
 
-    def prepare(self, name: str, numbers: tuple[Decimal, ...]) -> None:
+    def prepare(self, words: Words, numbers: Numbers) -> None:
         """What is set once, before the first move."""
-        if name in self.settings or self.hole is not None:
+        if (name := _name(words)) in self.settings or self.hole is not None:
             self.refuse(f"{name} is set a second time, or within a hole")
-        self.set(name, numbers)
+        self.set(words, numbers)
 
-    def choose(self, name: str, numbers: tuple[Decimal, ...]) -> None:
+    def choose(self, words: Words, numbers: Numbers) -> None:
         """What a job may have set, once, before the first move."""
-        self.prepare(name, numbers)
+        self.prepare(words, numbers)
 
-    def rest(self, _: str, numbers: tuple[Decimal, ...]) -> None:
+    def rest(self, _: Words, numbers: Numbers) -> None:
         if numbers[0] != 0:
             self.refuse(f"'WAIT SEC {numbers[0]}' is not a statement that zerorev writes", accepted="WAIT SEC 0.0")
         self.stand_still("WAIT SEC")
 
-    def stand_still(self, what: str) -> None:
-        """Refuse what would make a blend a stop, or what would run ahead of the moves."""
-        if self.hole is not None and self.hole.moves and self.hole.moves[-1].blend_mm:
-            self.refuse(f"{what} between blended moves")
-
-    def set(self, name: str, numbers: tuple[Decimal, ...]) -> None:
+    def set(self, words: Words, numbers: Numbers) -> None:
+        name = _name(words)
         if len(numbers) == 1 and not numbers[0] > 0:
             self.refuse(f"{name} is set to {numbers[0]}", accepted="a number above 0")
         self.settings[name] = numbers
 
-    def go(self, _: str, numbers: tuple[Decimal, ...]) -> None:
-        """A move of all axes: to a point on the way, if another follows before the first straight move."""
-        if missing := [name for name in NEEDED if name not in self.settings]:
-            self.refuse(f"a move before {', '.join(missing)} is set")
-        before: tuple[Statement, ...] = ()
-        if self.hole is not None and not self.hole.moves:
-            before = (*self.hole.way, *self.hole.statements)
-        else:
-            self.close()
-        self.hole = _Hole(self.line, WrittenJoints(numbers[:6]), before)
+    def all_axes(self, _: Words, numbers: Numbers) -> None:
+        self.need(NEEDED)
+        self.go(WrittenJoints(numbers[:6]))
 
-    def go_straight(self, _: str, numbers: tuple[Decimal, ...]) -> None:
-        self.move(numbers, blended=False)
+    def straight(self, _: Words, numbers: Numbers) -> None:
+        self.line_to(numbers, Decimal(0))
 
-    def go_blended(self, _: str, numbers: tuple[Decimal, ...]) -> None:
-        self.move(numbers, blended=True)
+    def blended(self, _: Words, numbers: Numbers) -> None:
+        self.line_to(numbers, self.settings.get("$APO.CDIS", (None,))[0])
 
-    def move(self, numbers: tuple[Decimal, ...], *, blended: bool) -> None:
-        if self.hole is None:
-            self.refuse("a LIN before the PTP of its hole")
-        for name in ("$VEL.CP", "$APO.CDIS") if blended else ("$VEL.CP",):
-            if name not in self.settings:
+    def line_to(self, numbers: Numbers, blend: Decimal | None) -> None:
+        self.need_hole("a LIN before the PTP of its hole")
+        for name, given in (("$VEL.CP", "$VEL.CP" in self.settings), ("$APO.CDIS", blend is not None)):
+            if not given:
                 self.refuse(f"a LIN before {name} is set")
-        blend = self.settings["$APO.CDIS"][0] if blended else Decimal(0)
-        self.hole.moves.append(WrittenMove(self.line, _frame(numbers), Pace(self.settings["$VEL.CP"][0]), blend))
+        self.move(_frame(numbers), Pace(self.settings["$VEL.CP"][0]), blend, linear=True)
 
     def finish(self, *_: object) -> None:
-        if self.hole is not None and not self.hole.moves:
-            self.tail, self.hole = (*self.hole.way, *self.hole.statements), None
-        self.close()
+        self.close_last()
         self.ended = True
 
-    def close(self) -> None:
-        """End the hole that is being read."""
-        hole, self.hole = self.hole, None
-        if hole is None:
-            return
-        if hole.moves[-1].blend_mm:
-            self.refuse(f"the last move of a hole (line {hole.moves[-1].line}) is blended", accepted="no C_DIS")
-        self.holes.append(WrittenHole(hole.line, hole.start, tuple(hole.moves), tuple(hole.statements), hole.way))
 
-    def end(self) -> WrittenProgram:
-        if not self.ended or not self.name:
-            self.refuse("the program is not complete", accepted="DEF to END")
-        if not self.holes:
-            self.refuse("the program has no holes")
-        tool, base = (_frame(self.settings[name]) for name in ("$TOOL", "$BASE"))
-        return WrittenProgram(self.name, tool, base, tuple(self.holes), tuple(self.head), self.tail)
-
-    def refuse_form(self, statement: Statement) -> NoReturn:
-        alike = [form for form in SOURCES if words(form, self.refuse)[0] == statement.words[0] and "E6AXIS" not in form]
-        accepted = " or ".join(alike) + ", a number for each 0" * any("0" in form for form in alike)
-        what = f"'{statement.source[:80]}' is not a statement that zerorev writes"
-        self.refuse(what, accepted=accepted or "a program as zerorev exports it")
-
-    def refuse(self, what: str, *, accepted: str = "a program as zerorev exports it") -> NoReturn:
-        raise InputError(what, where=f"{self.file}, line {self.line}", accepted=accepted)
-
-    def refuse_at(self, line: int, what: str) -> NoReturn:
-        self.line = line
-        self.refuse(what)
+def _shape(words: Words) -> tuple[str, ...]:
+    """The shape of a statement; $BASE counts from what any variable holds."""
+    if words[:2] == ("$BASE", "=") and words[3:4] == (":",) and len(str(words[2])) > 1:
+        return shape((*words[:2], "$ROBROOT", *words[3:]))
+    return shape(words)
 
 
-def is_call(words: tuple[Word, ...]) -> bool:
-    """Whether a statement calls a program that is not a word of KRL, with nothing but literals."""
-    name, *rest = words
-    if not isinstance(name, str) or not NAME.fullmatch(name) or name in KEPT or rest[:1] != ["("] or rest[-1:] != [")"]:
-        return False
-    arguments, commas = rest[1:-1:2], rest[2:-1:2]
-    literal = all(
-        isinstance(each, Decimal) or each in ("TRUE", "FALSE") or (len(each) > 1 and each[0] in '#"')
-        for each in arguments
-    )
-    return literal and all(comma == "," for comma in commas) and len(arguments) in (0, len(commas) + 1)
-
-
-def _any_variable(words: tuple[str, ...]) -> tuple[str, ...]:
-    """$BASE counts from what any variable holds."""
-    if words[:2] == ("$BASE", "=") and words[3:4] == (":",) and len(words[2]) > 1:
-        return (*words[:2], "$ROBROOT", *words[3:])
-    return words
-
-
-def _name(words: tuple[Word, ...]) -> str:
+def _name(words: Words) -> str:
     """How a message calls what a statement sets."""
     match words:
         case ("EXT", *_):
@@ -232,14 +140,14 @@ def _name(words: tuple[Word, ...]) -> str:
     return str(words[0])
 
 
-def _frame(numbers: tuple[Decimal, ...]) -> WrittenFrame:
+def _frame(numbers: Numbers) -> WrittenFrame:
     """X, Y, Z and A, B, C."""
     return WrittenFrame(numbers[:3], numbers[3:])
 
 
 POINT, AXES = "X 0,Y 0,Z 0,A 0,B 0,C 0", "A1 0,A2 0,A3 0,A4 0,A5 0,A6 0"
 OUTER = [",".join(f"E{number} 0" for number in range(1, 7) if chosen >> (number - 1) & 1) for chosen in range(1, 2**6)]
-SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
+SOURCES: dict[str, Callable[[_Reading, Words, Numbers], None]] = {
     "EXT BAS (BAS_COMMAND :IN,REAL :IN )": _Reading.prepare,
     "BAS (#INITMOV,0 )": _Reading.reset,
     "BAS (#VEL_PTP,0 )": _Reading.prepare,
@@ -257,22 +165,20 @@ SOURCES: dict[str, Callable[[_Reading, str, tuple[Decimal, ...]], None]] = {
     "$ADVANCE=0": _Reading.prepare,
     "$VEL.ORI1=0": _Reading.prepare,
     "$VEL.ORI2=0": _Reading.prepare,
-    f"PTP {{AXIS: {AXES}}}": _Reading.go,
-    **{f"PTP {{E6AXIS: {AXES},{outer}}}": _Reading.go for outer in OUTER},
+    f"PTP {{AXIS: {AXES}}}": _Reading.all_axes,
+    **{f"PTP {{E6AXIS: {AXES},{outer}}}": _Reading.all_axes for outer in OUTER},
     "WAIT SEC 0": _Reading.rest,
     "$VEL.CP=0": _Reading.set,
     "$APO.CDIS=0": _Reading.set,
-    f"LIN {{{POINT}}}": _Reading.go_straight,
-    f"LIN {{{POINT}}} C_DIS": _Reading.go_blended,
+    f"LIN {{{POINT}}}": _Reading.straight,
+    f"LIN {{{POINT}}} C_DIS": _Reading.blended,
     "END": _Reading.finish,
 }
 """Every form of a statement between DEF and END, and what it does; `0` stands for any number."""
 
-FORMS = {shape(words(source, _Reading("").refuse)): act for source, act in SOURCES.items()}
+FORMS = Forms(SOURCES, KRL_WORDS.form, _shape, lambda form: "E6AXIS" not in form)
 NEEDED = tuple(
     dict.fromkeys(
-        _name(words(source, _Reading("").refuse))
-        for source, act in SOURCES.items()
-        if act in (_Reading.reset, _Reading.prepare)
+        _name(KRL_WORDS.form(form)) for form, act in SOURCES.items() if act in (_Reading.reset, _Reading.prepare)
     )
 )

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from decimal import Decimal
-from functools import partial
-from typing import NoReturn
+from collections.abc import Iterator, Sequence
 
 from zerorev.model.written import Statement, Word
-from zerorev.program.source import Refuse, ascii_lines, rounds_alike
+from zerorev.program.source import Lexicon, Refuse, alike_but, ascii_lines, rounds_alike
 
-__all__ = ["alike", "shape", "statements", "words"]
-
-LONGEST_STATEMENT = 255  # characters: twice what `export` writes
+__all__ = ["KRL_WORDS", "alike", "statements"]
 
 _ANGLES = ("A", "B", "C")
 _SIGNS = "{}(),:="
-_WORD = re.compile(rf'"[^"]*"|[{_SIGNS}]|[^ \t"{_SIGNS}]+|"')
-_TEXT = re.compile(r'"[^"]*"')
-_NUMBER = re.compile(r"-?[0-9]{1,9}(?:\.[0-9]{1,12})?")
-_NAME = re.compile(r"[$#]?[A-Z_][A-Z0-9_]*(?:\.[A-Z0-9_]+)*|LOAD_DATA\[[0-9]{1,2}\]", re.IGNORECASE)
+KRL_WORDS = Lexicon(
+    word=re.compile(rf'"[^"]*"|[{_SIGNS}]|[^ \t"{_SIGNS}]+|"'),
+    signs=_SIGNS,
+    name=re.compile(r"[$#]?[A-Z_][A-Z0-9_]*(?:\.[A-Z0-9_]+)*|LOAD_DATA\[[0-9]{1,2}\]", re.IGNORECASE),
+    longest=255,
+    capitals=True,
+)
 
 
 def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
@@ -34,39 +32,10 @@ def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
     """
     begun = False
     for number, line in ascii_lines(text, refuse):
-        if not begun and line.startswith("&"):
-            continue
-        printed = line.partition(";")[0].rstrip()
-        if len(printed) > LONGEST_STATEMENT:
-            refuse(number, f"a statement of {len(printed)} characters: a controller may not read all of it")
-        if source := " ".join(printed.split()):
-            begun = True
-            yield Statement(words(printed, partial(refuse, number)), number, source)
-
-
-def words(source: str, refuse: Callable[[str], NoReturn]) -> tuple[Word, ...]:
-    """The words of a statement: signs, names in capitals (KRL does not tell case), numbers, and texts in their quotes.
-
-    Args:
-        source: one statement, without a comment.
-        refuse: called with what is wrong.
-    """
-    found: list[Word] = []
-    for word in _WORD.findall(source):
-        if _NUMBER.fullmatch(word):
-            found.append(Decimal(word))
-        elif _TEXT.fullmatch(word):
-            found.append(word)
-        elif word in _SIGNS or _NAME.fullmatch(word):
-            found.append(word.upper())
-        else:
-            refuse(f"'{word[:60]}' in '{source[:60]}' is neither a name nor a number as zerorev writes it")
-    return tuple(found)
-
-
-def shape(words: tuple[Word, ...]) -> tuple[str, ...]:
-    """The words of a statement, `0` in the place of every number."""
-    return tuple("0" if isinstance(word, Decimal) else word for word in words)
+        if begun or not line.startswith("&"):
+            for statement in KRL_WORDS.statements(number, line.partition(";")[0], refuse):
+                begun = True
+                yield statement
 
 
 def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
@@ -76,17 +45,7 @@ def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
         found: words of a program's statement.
         wanted: as `export` writes it.
     """
-    if len(found) != len(wanted):
-        return False
-    rounded = "{" in wanted
-    names = ("", *wanted)
-    return all(
-        own == other
-        or (
-            rounded
-            and isinstance(own, Decimal)
-            and isinstance(other, Decimal)
-            and rounds_alike(own, other, turns=name in _ANGLES)
-        )
-        for own, other, name in zip(found, wanted, names, strict=False)
+    rounded, names = "{" in wanted, ("", *wanted)
+    return alike_but(
+        found, wanted, lambda at, own, other: rounded and rounds_alike(own, other, turns=names[at] in _ANGLES)
     )

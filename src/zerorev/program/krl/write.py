@@ -56,7 +56,6 @@ def to_krl(
 
 def krl_modules(
     program: Program,
-    *,
     name: str | None = None,
     findings: tuple[Finding, ...] | None = None,
     version: str | None = None,

@@ -49,7 +49,6 @@ AFTERWARDS = "ConfL\\On;"  # as a controller has it from the start
 
 def rapid_modules(
     program: Program,
-    *,
     name: str | None = None,
     findings: tuple[Finding, ...] | None = None,
     version: str | None = None,

@@ -11,19 +11,9 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import NoReturn
 
-from zerorev.errors import InputError
-from zerorev.model.written import (
-    Pace,
-    Statement,
-    Word,
-    WrittenFrame,
-    WrittenHole,
-    WrittenJoints,
-    WrittenMove,
-    WrittenProgram,
-)
+from zerorev.model.written import Pace, Statement, WrittenFrame, WrittenJoints, WrittenProgram
+from zerorev.program.reading import Reading, Starter, Words
 from zerorev.program.tp.source import ACCEPTED, Listed, Position, listed
 
 __all__ = ["read_starter", "read_tp"]
@@ -51,55 +41,46 @@ def read_tp(text: str, file: str = "program") -> WrittenProgram:
     Raises:
         InputError: a statement that `export` does not write; the message has its line.
     """
-    reading = _Reading(file)
-    source = listed(text, reading.refuse_at)
-    reading.begin(source)
-    for line, statement in source.statements:
-        reading.take(line, statement)
-    return reading.end()
+    return _Reading(file).read(text)
 
 
-def read_starter(text: str, file: str = "program") -> tuple[str, tuple[Statement, ...]] | None:
-    """Name and statements of a program that selects and moves nothing itself, but calls others; None: of any other.
+def read_starter(text: str, file: str = "program") -> Starter | None:
+    """A program that selects and moves nothing itself, but calls others; None: any other.
 
     Raises:
         InputError: as `read_tp`.
     """
-    reading = _Reading(file)
-    source = listed(text, reading.refuse_at)
-    reading.begin(source)
-    if source.positions or any(not statement.startswith("CALL") for _, statement in source.statements):
-        return None
-    for line, statement in source.statements:
-        reading.take(line, statement)
-    return source.name, tuple(reading.head)
+    return _Reading(file).starter(text)
 
 
 @dataclass
-class _Hole:
-    line: int
-    start: WrittenJoints
-    way: tuple[Statement, ...] = ()
-    moves: list[WrittenMove] = field(default_factory=list)
-    statements: list[Statement] = field(default_factory=list)
-
-
-@dataclass
-class _Reading:
+class _Reading(Reading):
     """What is known up to a statement."""
 
-    file: str
-    line: int = 1
+    accepted, stop = ACCEPTED, "FINE"
+
     source: Listed | None = None
-    frames: dict[str, int] = field(default_factory=dict)
-    head: list[Statement] = field(default_factory=list)
-    hole: _Hole | None = None
-    holes: list[WrittenHole] = field(default_factory=list)
+    selected: dict[str, int] = field(default_factory=dict)
     reached: set[int] = field(default_factory=set)
 
-    def begin(self, source: Listed) -> None:
-        self.source = source
-        self.head.append(Statement(("/PROG", source.name.upper()), source.line, f"/PROG {source.name}"))
+    def read(self, text: str) -> WrittenProgram:
+        for line, statement in self.begin(text).statements:
+            self.take(line, statement)
+        return self.end()
+
+    def starter(self, text: str) -> Starter | None:
+        source = self.begin(text)
+        if source.positions or any(not statement.startswith("CALL") for _, statement in source.statements):
+            return None
+        for line, statement in source.statements:
+            self.take(line, statement)
+        return self.name, tuple(self.head)
+
+    def begin(self, text: str) -> Listed:
+        self.source = source = listed(text, self.refuse_at)
+        self.name = source.name
+        self.keep(Statement(("/PROG", source.name.upper()), source.line, f"/PROG {source.name}"))
+        return source
 
     def take(self, line: int, statement: str) -> None:
         """One statement of the file."""
@@ -107,27 +88,26 @@ class _Reading:
         if frame := _FRAME.fullmatch(statement):
             words = self.select(frame[1], int(frame[2]))
         elif motion := _MOTION.fullmatch(statement):
-            words = self.move(*motion.groups())
+            words = self.motion(*motion.groups())
         elif call := _CALL.fullmatch(statement):
             words = self.call(*call.groups())
         else:
             self.refuse(f"'{statement[:80]}' is not a statement that zerorev writes", accepted=FORMS)
-        (self.head if self.hole is None else self.hole.statements).append(Statement(words, line, statement))
+        self.keep(Statement(words, line, statement))
 
-    def select(self, name: str, number: int) -> tuple[Word, ...]:
+    def select(self, name: str, number: int) -> Words:
         """A frame, once, before the first motion."""
-        if name in self.frames or self.hole is not None:
+        if name in self.selected or self.hole is not None:
             self.refuse(f"{name} is set a second time, or after a motion")
-        self.frames[name] = number
+        self.selected[name] = number
         return name, Decimal(number)
 
-    def call(self, name: str, arguments: str | None) -> tuple[Word, ...]:
+    def call(self, name: str, arguments: str | None) -> Words:
         """A program of the controller, called where the robot stands."""
-        if self.hole is not None and self.hole.moves and not self.hole.moves[-1].stops:
-            self.refuse(f"{name} is called between blended moves")
+        self.stand_still(f"{name} is called")
         return ("CALL", name, *re.findall(_ARGUMENT, arguments or ""))
 
-    def move(self, kind: str, number: str, value: str, unit: str, termination: str) -> tuple[Word, ...]:
+    def motion(self, kind: str, number: str, value: str, unit: str, termination: str) -> Words:
         """A motion to a position that no other one leads to."""
         position = self.position(int(number))
         if bool(position.posture) != (kind == "L"):
@@ -138,7 +118,7 @@ class _Reading:
         if (kind, unit) == ("J", "%"):
             if not stops:
                 self.refuse("a J move at a share of the speed that is blended", accepted="FINE")
-            self.go(position)
+            self.go(WrittenJoints(position.values))
         elif (kind, unit) == ("J", "msec"):
             self.follow(WrittenJoints(position.values), Pace(speed * MILLI, "s"), stops, linear=False)
         elif (kind, unit) == ("L", "mm/sec"):
@@ -156,56 +136,28 @@ class _Reading:
             self.refuse(f"P[{number}] is not among the positions")
         if number in self.reached:
             self.refuse(f"P[{number}] is moved to a second time", accepted="a position for each motion")
-        if missing := [name for name in ("UFRAME_NUM", "UTOOL_NUM") if name not in self.frames]:
+        if missing := [name for name in ("UFRAME_NUM", "UTOOL_NUM") if name not in self.selected]:
             self.refuse(f"a motion before {' and '.join(missing)} is set")
         position = self.source.positions[number]
-        if (position.user, position.tool) != (self.frames["UFRAME_NUM"], self.frames["UTOOL_NUM"]):
+        if (position.user, position.tool) != (self.selected["UFRAME_NUM"], self.selected["UTOOL_NUM"]):
             self.refuse_at(position.line, f"P[{number}] is in other frames than the program selects")
         self.reached.add(number)
         return position
 
-    def go(self, position: Position) -> None:
-        """A move of all axes: to a point on the way, if another follows before the first move of a hole."""
-        before: tuple[Statement, ...] = ()
-        if self.hole is not None and not self.hole.moves:
-            before = (*self.hole.way, *self.hole.statements)
-        else:
-            self.close()
-        self.hole = _Hole(self.line, WrittenJoints(position.values), before)
-
     def follow(self, end: WrittenFrame | WrittenJoints, pace: Pace, stops: bool, *, linear: bool) -> None:
-        if self.hole is None:
-            self.refuse("a move of a hole before the J move to its start")
-        self.hole.moves.append(WrittenMove(self.line, end, pace, Decimal(0) if stops else None, linear))
+        self.need_hole("a move of a hole before the J move to its start")
+        self.move(end, pace, Decimal(0) if stops else None, linear=linear)
 
-    def close(self) -> None:
-        """End the hole that is being read."""
-        hole, self.hole = self.hole, None
-        if hole is None:
-            return
-        if not hole.moves[-1].stops:
-            self.refuse(f"the last move of a hole (line {hole.moves[-1].line}) is blended", accepted="FINE")
-        self.holes.append(WrittenHole(hole.line, hole.start, tuple(hole.moves), tuple(hole.statements), hole.way))
+    def tool_and_base(self) -> tuple[None, WrittenFrame | None]:
+        return None, WORLD if self.selected["UFRAME_NUM"] == 0 else None
 
     def end(self) -> WrittenProgram:
         assert self.source is not None
-        tail: tuple[Statement, ...] = ()
-        if self.hole is not None and not self.hole.moves:
-            tail, self.hole = (*self.hole.way, *self.hole.statements), None
-        self.close()
-        if not self.holes:
-            self.refuse("the program has no holes")
+        self.close_last()
+        program = super().end()
         if unused := sorted(self.source.positions.keys() - self.reached):
             self.refuse_at(self.source.positions[unused[0]].line, f"P[{unused[0]}] is not moved to")
-        base = WORLD if self.frames["UFRAME_NUM"] == 0 else None
-        return WrittenProgram(self.source.name, None, base, tuple(self.holes), tuple(self.head), tail)
-
-    def refuse(self, what: str, *, accepted: str = ACCEPTED) -> NoReturn:
-        raise InputError(what, where=f"{self.file}, line {self.line}", accepted=accepted)
-
-    def refuse_at(self, line: int, what: str) -> NoReturn:
-        self.line = line
-        self.refuse(what)
+        return program
 
 
 def _pose(position: Position) -> WrittenFrame:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from zerorev.model.written import Word
-from zerorev.program.source import Refuse, ascii_lines, rounds_alike
+from zerorev.program.source import Refuse, alike_but, ascii_lines, rounds_alike
 
 __all__ = ["ACCEPTED", "Listed", "Position", "alike", "listed"]
 
@@ -181,16 +181,9 @@ def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
         found: words of a program's statement.
         wanted: as `export` writes it.
     """
-    if len(found) != len(wanted):
-        return False
     names = ("", *wanted)
-    return all(
-        own == other
-        or (
-            name in _VALUES
-            and isinstance(own, Decimal)
-            and isinstance(other, Decimal)
-            and rounds_alike(own, other, turns=name in _ANGLES)
-        )
-        for own, other, name in zip(found, wanted, names, strict=False)
+    return alike_but(
+        found,
+        wanted,
+        lambda at, own, other: names[at] in _VALUES and rounds_alike(own, other, turns=names[at] in _ANGLES),
     )

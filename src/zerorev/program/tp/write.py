@@ -12,7 +12,6 @@ from importlib.metadata import version as installed_version
 from zerorev.errors import NotExportableError
 from zerorev.model.controller import Call
 from zerorev.model.finding import Finding
-from zerorev.program.dialect import ProgramFile
 from zerorev.program.head import about, head, part_head
 from zerorev.program.names import label
 from zerorev.program.neutral import HoleProgram, Move, Program, split
@@ -23,19 +22,18 @@ from zerorev.program.tp.listing import Frames, Listing
 from zerorev.program.tp.names import TP_NAMES, called
 from zerorev.program.tp.text import TP_COMMENTS, Speed, joint_time, tip_speed
 
-__all__ = ["SUFFIX", "most_holes", "too_large", "write_tp"]
+__all__ = ["most_holes", "too_large", "tp_programs"]
 
-SUFFIX = ".ls"
 COMMENT = "zerorev drilling"  # 16 characters
 WAY_SPEED = Speed(20, "%")  # of what the joints can: these moves are not checked for collisions
 MOST_LINES, MOST_POSITIONS = 9_999, 1_000  # of a file
 MOST_FINDINGS = 60  # in the comments of a file
 
 
-def write_tp(
+def tp_programs(
     program: Program, name: str, findings: tuple[Finding, ...], version: str | None = None
-) -> tuple[ProgramFile, ...]:
-    """The files of a program, the one that is started first.
+) -> dict[str, str]:
+    """The text of each program by its name, the one that is started first.
 
     Args:
         program: what to write.
@@ -54,12 +52,12 @@ def write_tp(
     _refuse_own_calls(program, [name, *parts])
     begin = head(program, _as_many(findings), version, TP_COMMENTS, sentences(program))
     if not parts:
-        return (_file(program, name, begin, whole=True),)
-    files = [_starter(program, name, begin, list(parts))]
+        return {name: _text(program, name, begin, whole=True)}
+    texts = {name: _starter(program, name, begin, list(parts))}
     for number, (called_as, part) in enumerate(parts.items(), start=1):
         title = f"Part {number} of {len(parts)} of {name}, which starts it: {len(part.holes)} holes"
-        files.append(_file(part, called_as, part_head(program, title, version, TP_COMMENTS, sentences(program))))
-    return tuple(files)
+        texts[called_as] = _text(part, called_as, part_head(program, title, version, TP_COMMENTS, sentences(program)))
+    return texts
 
 
 def most_holes(program: Program) -> int:
@@ -89,8 +87,8 @@ def too_large(program: Program) -> tuple[Finding, ...]:
     return (Finding("warning", "controller", message),)
 
 
-def _file(program: Program, name: str, begin: list[str], *, whole: bool = False) -> ProgramFile:
-    """A file that moves the robot.
+def _text(program: Program, name: str, begin: list[str], *, whole: bool = False) -> str:
+    """The text of a program that moves the robot.
 
     Args:
         program: its holes.
@@ -110,17 +108,17 @@ def _file(program: Program, name: str, begin: list[str], *, whole: bool = False)
     for joints in program.end:
         listing.move("J", listing.frames.joints(joints), WAY_SPEED, stops=True)
     _call(listing, calls.after_job if whole else ())
-    return ProgramFile(name + SUFFIX, listing.text(name, COMMENT))
+    return listing.text(name, COMMENT)
 
 
-def _starter(program: Program, name: str, begin: list[str], parts: list[str]) -> ProgramFile:
+def _starter(program: Program, name: str, begin: list[str], parts: list[str]) -> str:
     """The file that starts the parts, and moves nothing itself."""
     listing, calls = Listing(Frames.of(program)), program.settings.calls
     listing.remarks(begin)
     _call(listing, calls.before_job)
     _call(listing, tuple(Call(part) for part in parts))
     _call(listing, calls.after_job)
-    return ProgramFile(name + SUFFIX, listing.text(name, COMMENT))
+    return listing.text(name, COMMENT)
 
 
 def _hole(listing: Listing, hole: HoleProgram, program: Program) -> None:

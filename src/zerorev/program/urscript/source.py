@@ -6,24 +6,20 @@ Capitals and small letters differ in URScript, so words are kept as they stand.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from decimal import Decimal
-from functools import partial
-from typing import NoReturn
+from collections.abc import Iterator, Sequence
 
 from zerorev.model.written import Statement, Word
-from zerorev.program.source import Refuse, ascii_lines, rounds_alike
+from zerorev.program.source import Lexicon, Refuse, alike_but, ascii_lines, rounds_alike
 
-__all__ = ["alike", "shape", "statements", "words"]
-
-LONGEST_STATEMENT = 255  # characters: half as many again as `export` writes
+__all__ = ["URSCRIPT_WORDS", "alike", "statements"]
 
 _OPEN, _CLOSE = ("[", "p["), "]"
-_WORD = re.compile(r'"[^"]*"|p\[|[\[\](),=:]|[^ \t"\[\](),=:]+|"')
-_TEXT = re.compile(r'"[^"]*"')
-_SIGNS = ("[", "]", "p[", "(", ")", ",", "=", ":")
-_NUMBER = re.compile(r"-?[0-9]{1,9}(?:\.[0-9]{1,12})?")
-_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+URSCRIPT_WORDS = Lexicon(
+    word=re.compile(r'"[^"]*"|p\[|[\[\](),=:]|[^ \t"\[\](),=:]+|"'),
+    signs=("[", "]", "p[", "(", ")", ",", "=", ":"),
+    name=re.compile(r"[A-Za-z][A-Za-z0-9_]*"),
+    longest=255,
+)
 
 
 def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
@@ -34,34 +30,7 @@ def statements(text: str, refuse: Refuse) -> Iterator[Statement]:
         refuse: called where a controller may read something else than this does.
     """
     for number, line in ascii_lines(text, refuse):
-        printed = line.partition("#")[0].rstrip()
-        if len(printed) > LONGEST_STATEMENT:
-            refuse(number, f"a statement of {len(printed)} characters: none that is written is as long")
-        if source := " ".join(printed.split()):
-            yield Statement(words(printed, partial(refuse, number)), number, source)
-
-
-def words(source: str, refuse: Callable[[str], NoReturn]) -> tuple[Word, ...]:
-    """The words of a statement: signs, names, numbers, and texts in their quotes.
-
-    Args:
-        source: one statement, without a comment.
-        refuse: called with what is wrong.
-    """
-    found: list[Word] = []
-    for word in _WORD.findall(source):
-        if _NUMBER.fullmatch(word):
-            found.append(Decimal(word))
-        elif word in _SIGNS or _NAME.fullmatch(word) or _TEXT.fullmatch(word):
-            found.append(word)
-        else:
-            refuse(f"'{word[:60]}' in '{source.strip()[:60]}' is neither a name nor a number as zerorev writes it")
-    return tuple(found)
-
-
-def shape(words: tuple[Word, ...]) -> tuple[str, ...]:
-    """The words of a statement, `0` in the place of every number."""
-    return tuple("0" if isinstance(word, Decimal) else word for word in words)
+        yield from URSCRIPT_WORDS.statements(number, line.partition("#")[0], refuse)
 
 
 def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
@@ -71,13 +40,8 @@ def alike(found: Sequence[Word], wanted: Sequence[Word]) -> bool:
         found: words of a program's statement.
         wanted: as `export` writes it.
     """
-    if len(found) != len(wanted):
-        return False
-    listed = False  # within the brackets of a pose or of joints
-    for own, other in zip(found, wanted, strict=True):
-        numbers = isinstance(own, Decimal) and isinstance(other, Decimal)
-        if own != other and not (listed and numbers and rounds_alike(Decimal(own), Decimal(other))):
-            return False
-        if other in _OPEN or other == _CLOSE:
-            listed = other in _OPEN
-    return True
+    listed, within = [], False  # the brackets of a pose or of joints
+    for word in wanted:
+        within = word in _OPEN or (within and word != _CLOSE)
+        listed.append(within)
+    return alike_but(found, wanted, lambda at, own, other: listed[at] and rounds_alike(own, other))
