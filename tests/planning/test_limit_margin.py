@@ -14,6 +14,7 @@ import zerorev as zr
 from oracles.arm import trace
 from oracles.holes import random_hole
 from zerorev.errors import InputError
+from zerorev.model.corner import CONTROLLERS
 from zerorev.model.job import Job
 from zerorev.model.map_task import Question
 from zerorev.motion.drilling import Drilling
@@ -185,8 +186,12 @@ class TestWhoeverChecks:
         drilled, _, stricter = near
         whole = plan_job(Job(drilled.robot, drilled.tool, (drilled.hole,), drilled.settings))
         program = build_program(whole)
-        assert not [finding for finding in preflight(program, whole) if finding.kind == "limit"]
-        (found,) = (each for each in preflight(program, replace(whole, settings=stricter)) if each.kind == "limit")
+        assert not [finding for finding in preflight(program, whole, CONTROLLERS["krl"]) if finding.kind == "limit"]
+        (found,) = (
+            each
+            for each in preflight(program, replace(whole, settings=stricter), CONTROLLERS["krl"])
+            if each.kind == "limit"
+        )
         assert found.level == "error"
         assert "limit_margin_deg" in found.message
 

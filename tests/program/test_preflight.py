@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from zerorev.errors import NotExportableError
+from zerorev.model.corner import CONTROLLERS
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
@@ -17,8 +18,10 @@ from zerorev.program.notes import corner_depth
 from zerorev.program.preflight import preflight
 
 
-def findings(plan, kind):
-    return [finding for finding in preflight(build_program(plan), plan) if finding.kind == kind]
+def findings(plan, kind, controller="krl"):
+    return [
+        finding for finding in preflight(build_program(plan), plan, CONTROLLERS[controller]) if finding.kind == kind
+    ]
 
 
 def fastest(plan, leg):
@@ -154,10 +157,10 @@ def test_a_move_of_too_great_a_turn_is_an_error(published, plan_of, spoil):
     (hole,) = program.holes
     far = spoil(hole.moves[1], end=spoil(hole.moves[1].end, psi=hole.moves[1].psi - np.deg2rad(170)))
     broken = spoil(program, holes=(spoil(hole, moves=(hole.moves[0], far, hole.moves[2])),))
-    messages = [f.message for f in preflight(broken, plan) if f.kind == "move_turn"]
+    messages = [f.message for f in preflight(broken, plan, CONTROLLERS["krl"]) if f.kind == "move_turn"]
     assert len(messages) == 2
     assert "linear move 2 turns the tool by 190.10 deg" in messages[0]
-    assert all(f.level == "error" for f in preflight(broken, plan) if f.kind == "move_turn")
+    assert all(f.level == "error" for f in preflight(broken, plan, CONTROLLERS["krl"]) if f.kind == "move_turn")
 
 
 def test_joints_that_are_not_at_the_poses_are_an_error(published, plan_of, spoil):
@@ -176,7 +179,10 @@ def test_joints_beyond_their_limits_are_an_error(published, plan_of, spoil):
     hole = published(1)
     joints = hole.motion.joints + np.array([0, 0, 0, 0, 0, 2 * np.pi])
     plan = plan_of(spoil(hole, motion=spoil(hole.motion, joints=joints)))
-    assert any("A6 beyond the joint limits" in finding.message for finding in preflight(build_program(plan), plan))
+    assert any(
+        "A6 beyond the joint limits" in finding.message
+        for finding in preflight(build_program(plan), plan, CONTROLLERS["krl"])
+    )
     with pytest.raises(NotExportableError, match=r"A6 at .* deg beyond its limits"):
         export(plan)
 
@@ -189,6 +195,18 @@ def test_a_fast_turn_of_the_tool_raises_the_orientation_speeds(krl, planned, pla
     assert f"{turn:.0f} deg/s" in warning.message
     state = krl.read(export(fast).text).moves[1].state
     assert state["$VEL.ORI1"] == state["$VEL.ORI2"] >= 1.2 * turn
+
+
+@pytest.mark.parametrize(
+    ("turn", "warned"),
+    [(95, set()), (105, {"tp", "urscript"}), (195, {"tp", "urscript"}), (205, set(CONTROLLERS))],
+)
+def test_a_turn_faster_than_is_usual_for_the_controller_is_a_warning(
+    turn, warned, planned, plan_of, straight_down_tool, spoil
+):
+    plan = turning_plan(plan_of, planned, 100.0, straight_down_tool)
+    fast = spoil(plan, settings=spoil(plan.settings, feed_plunge=turn / 100 * 20e-3))  # 100 deg over 20 mm
+    assert {name for name in CONTROLLERS if findings(fast, "turn_speed", name)} == warned
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import radians
 from typing import Literal, get_args
 
 from zerorev.errors import InputError
@@ -38,6 +39,8 @@ class Controller:
         parabola: whether a blend of straight moves is taken for a parabola, as far as one can know; else its curve is
             not known, and a motion has to hold for every one.
         sized: whether a program says how large a blend is; else the controller's settings and the feed do.
+        turn_speed: up to which its controllers turn the tool, as far as is usual [rad/s]; above it a feed may be
+            throttled.
         refused: ways of passing the corner that are not offered, and why.
     """
 
@@ -49,6 +52,7 @@ class Controller:
     share: float = 0.5
     parabola: bool = False
     sized: bool = True
+    turn_speed: float = radians(200.0)
     refused: Mapping[CornerKind, str] = field(default_factory=dict)
 
 
@@ -72,9 +76,18 @@ CONTROLLERS: Mapping[str, Controller] = {
             ("fanuc",),
             "joint",
             sized=False,
+            turn_speed=radians(100.0),
             refused={"blend": "how far CNT reaches depends on the feed and on the override, and so would the depth"},
         ),
-        Controller("urscript", "URScript", "Universal Robots", ("universal robots", "ur"), "joint", share=0.45),
+        Controller(
+            "urscript",
+            "URScript",
+            "Universal Robots",
+            ("universal robots", "ur"),
+            "joint",
+            share=0.45,
+            turn_speed=radians(100.0),  # a movel has none of its own, and nothing says at which the feed is cut
+        ),
         Controller(
             "inform",
             "INFORM",

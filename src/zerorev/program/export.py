@@ -141,7 +141,7 @@ def exporting(
             holes_per_program or plan.settings.holes_per_program or dialect.most_holes(program),
         ),
     )
-    findings = (*preflight(program, plan), *dialect.examine(program))
+    findings = (*preflight(program, plan, dialect.controller), *dialect.examine(program))
     _refuse_errors(findings)
     called = dialect.program_name(name or wanted.name)
     files = dialect.write(program, called, findings, version)
@@ -200,7 +200,7 @@ def retract_program(
     called = dialect.program_name(name or retract_name(plan, hole_id))
     number_of(plan, hole_id, "retract")
     way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)
-    _refuse_errors(preflight(way.program, plan))
+    _refuse_errors(preflight(way.program, plan, dialect.controller))
     text = dialect.retract_text(way, called, version or installed_version("zerorev"))
     return Exported((dialect.file(called, text),), way.findings, called, 1)
 

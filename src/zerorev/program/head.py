@@ -12,7 +12,7 @@ from zerorev.program.names import LONGEST_ID, label
 from zerorev.program.neutral import HoleProgram, Program
 from zerorev.program.plan_mark import MARK
 
-__all__ = ["about", "head", "mark", "part_head"]
+__all__ = ["about", "head", "listed", "mark", "part_head"]
 
 
 def head(
@@ -48,7 +48,7 @@ def head(
         at = f"hole {label(finding.hole, comments)}: " if finding.hole is not None else ""
         message = at + _with_labels(finding.message, ids, comments)
         lines += comments.lines(message, first=f"{finding.level}: ".ljust(10))
-    return [*lines, comments.sign, *_listed(sentences, comments), comments.rule]
+    return [*lines, comments.sign, *listed(sentences, comments), comments.rule]
 
 
 def part_head(program: Program, title: str, version: str, comments: Comments, sentences: Sequence[str]) -> list[str]:
@@ -67,7 +67,7 @@ def part_head(program: Program, title: str, version: str, comments: Comments, se
         *mark(program, comments),
         *comments.lines(title),
         comments.sign,
-        *_listed(sentences, comments),
+        *listed(sentences, comments),
         comments.rule,
     ]
 
@@ -105,7 +105,8 @@ def _blend(program: Program) -> str:
     return f"{settings.blend * 1e3:g} mm" if kind == "blend" else "none: exact stop"
 
 
-def _listed(sentences: Sequence[str], comments: Comments) -> list[str]:
+def listed(sentences: Sequence[str], comments: Comments) -> list[str]:
+    """Sentences one below the other, each with a dash."""
     return [line for text in sentences for line in comments.lines(text, first="- ")]
 
 

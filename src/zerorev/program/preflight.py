@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.model._arrays import Array
+from zerorev.model.corner import Controller
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.robot import Robot
@@ -18,20 +19,21 @@ from zerorev.program.waypoints import GREATEST_TURN
 
 __all__ = ["preflight"]
 
-USUAL_TURN_SPEED = float(np.deg2rad(200.0))  # [rad/s] what KUKA's $VEL.ORI1 and $VEL.ORI2 usually are
 ON_POSE = (1e-5, float(np.deg2rad(0.01)))  # [m], [rad] between a plan's joints and its poses
 ROUND_OFF = 1e-9
 # below these the decimals of a program no longer tell two points, a feed or a radius from none
 SHORTEST_MOVE, SLOWEST_FEED, SMALLEST_BLEND = 1e-6, 1e-6, 1e-7  # [m], [m/s], [m]
 
 
-def preflight(program: Program, plan: Plan) -> tuple[Finding, ...]:
+def preflight(program: Program, plan: Plan, controller: Controller) -> tuple[Finding, ...]:
     """Look at a program before it is written; an error among the findings stops the export.
 
     Args:
         program: made from `plan`.
         plan: whose robot, tool and branches the joints are taken from.
+        controller: that runs it.
     """
+    usual = controller.turn_speed
     plans = {hole.hole.id: hole for hole in plan.holes}
     found = [
         finding
@@ -39,7 +41,7 @@ def preflight(program: Program, plan: Plan) -> tuple[Finding, ...]:
         for finding in (
             *_joints(plan, plans[hole.id], program, hole),
             *_speeds(plan, plans[hole.id], hole),
-            *_turns(hole),
+            *_turns(hole, usual),
             *_printable(hole),
         )
     ]
@@ -90,7 +92,7 @@ def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding
     return too_fast(Drilling.of(plan, hole_plan.hole), hole_plan.motion.branch, pieces)
 
 
-def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
+def _turns(hole: HoleProgram, usual: float) -> tuple[Finding, ...]:
     """No move may turn the tool further than the short way round is certain, and each turns as its spin says."""
     found = []
     pose = hole.start.T_part_tcp
@@ -101,7 +103,7 @@ def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
             message += f"{np.rad2deg(by_pose):.2f} deg; at most {np.rad2deg(GREATEST_TURN):g} deg are allowed"
             found.append(Finding("error", "move_turn", message, hole.id))
         pose = move.end.T_part_tcp
-    if turn_speed(hole) > USUAL_TURN_SPEED:
+    if turn_speed(hole) > usual:
         message = f"the tool turns at {np.rad2deg(turn_speed(hole)):.0f} deg/s: see that the controller's limit of the "
         message += "orientation speed allows it, or it will throttle the feed"
         found.append(Finding("warning", "turn_speed", message, hole.id))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,11 +13,20 @@ from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
+from zerorev.program.head import listed, mark
+from zerorev.program.letters import Comments, fixed
+from zerorev.program.names import label
 from zerorev.program.neutral import HoleProgram, Program, build_program
 from zerorev.program.outward import Line, outward
 from zerorev.program.selection import number_of
 
-__all__ = ["Retract", "retract_of"]
+__all__ = ["DEEPER", "OFF_AXIS", "OFF_DIRECTION", "Retract", "retract_head", "retract_of"]
+
+OFF_AXIS, OFF_DIRECTION = 1.0, 0.5
+"""By how much the tool may stand beside the hole's axis, or be turned from it, so that it moves [mm], [deg]."""
+
+DEEPER = 0.5
+"""How far below the deepest point of the motion it may stand [mm]."""
 
 BEYOND = 5e-3  # [m] least way beyond the start of the stroke
 SAMPLES = 81  # places of the motion from which the way out is examined
@@ -105,3 +115,39 @@ def _reach(plan: Plan, answer: HolePlan, end: float) -> tuple[Finding, ...]:
         )
         return (Finding("warning", "retract", message, answer.hole.id),)
     return ()
+
+
+def retract_head(
+    retract: Retract, version: str, comments: Comments, sentences: Sequence[str], **names: str
+) -> list[str]:
+    """The comment block of a retract program.
+
+    Args:
+        retract: which.
+        version: of zerorev.
+        comments: of the language.
+        sentences: what has to be known before it is started; `{off}`, `{turned}`, `{end}` and `{deep}` are figures.
+        names: further words.
+    """
+    program, hole = retract.program, retract.hole
+    words = {
+        "off": f"{OFF_AXIS:g}",
+        "turned": f"{OFF_DIRECTION:g}",
+        "end": fixed(retract.end * 1e3, 3),
+        "deep": fixed(-retract.deepest * 1e3 + DEEPER, 3),
+        **names,
+    }
+    facts = (
+        f"Out of hole {hole.number} of {program.listed}: {label(hole.id, comments)}",
+        f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
+        *(f"{finding.level}: {finding.message}" for finding in retract.findings),
+    )
+    return [
+        comments.rule,
+        *comments.lines(f"Written by zerorev {version}"),
+        *mark(program, comments),
+        *(line for text in facts for line in comments.lines(text)),
+        comments.sign,
+        *listed([text.format(**words) for text in sentences], comments),
+        comments.rule,
+    ]

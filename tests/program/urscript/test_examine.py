@@ -119,14 +119,3 @@ def test_other_makers_robots_are_refused(plan):
             plan, robot=replace(plan.robot, manufacturer="KUKA"), settings=replace(plan.settings, controller="urscript")
         )
     )
-
-
-def test_a_fast_turn_of_the_tool_is_a_warning(plan):
-    program = build_program(plan)
-    (hole,) = program.holes
-    rates = {}
-    for feed in (0.05, 0.4, 5.0):
-        fast = replace(hole, moves=tuple(replace(move, feed=feed) for move in hole.moves))
-        kinds = [each.kind for each in examine(replace(program, holes=(fast,)))]
-        rates[feed] = "turn_speed" in kinds
-    assert rates == {0.05: False, 0.4: True, 5.0: False}

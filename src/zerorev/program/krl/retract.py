@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from zerorev.program.head import mark
 from zerorev.program.krl.controller import AT_REST, base, header, tool_and_load
-from zerorev.program.krl.names import krl_label
 from zerorev.program.krl.text import KRL_COMMENTS
 from zerorev.program.krl.write import EXT_BAS, PTP_ACCELERATION
 from zerorev.program.letters import fixed, settled
 from zerorev.program.refusals import refuse_other_makers
-from zerorev.program.retract import Retract
+from zerorev.program.retract import DEEPER, OFF_AXIS, OFF_DIRECTION, Retract, retract_head
 
 __all__ = ["retract_to_krl"]
 
-OFF_AXIS, OFF_DIRECTION = 1.0, 0.5  # [mm], [deg] by which the tool may stand beside the hole's axis
-DEEPER = 0.5  # [mm] below the deepest point of the motion
 PTP_SPEED = 1  # [%]: the only PTP ends where it begins
 
 SENTENCES = (
@@ -42,23 +38,9 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
     Raises:
         NotExportableError: the robot is not a KUKA.
     """
-    program, hole = retract.program, retract.hole
+    program = retract.program
     refuse_other_makers("krl", program.robot)
     end, deep = fixed(-retract.end * 1e3, 3), fixed(-retract.deepest * 1e3 + DEEPER, 3)
-    words = {
-        "off": f"{OFF_AXIS:g}", "turned": f"{OFF_DIRECTION:g}", "end": fixed(retract.end * 1e3, 3), "deep": deep
-    }  # fmt: skip
-    facts = (
-        f"Out of hole {hole.number} of {program.listed}: {krl_label(hole.id)}",
-        f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
-        *(f"{finding.level}: {finding.message}" for finding in retract.findings),
-    )
-    lines = [KRL_COMMENTS.rule, *KRL_COMMENTS.lines(f"Written by zerorev {version}"), *mark(program, KRL_COMMENTS)]
-    for text in facts:
-        lines += KRL_COMMENTS.lines(text)
-    lines.append(";")
-    for text in SENTENCES:
-        lines += KRL_COMMENTS.lines(text.format(**words), first="- ")
     off = [
         f"(HERE.{first}*HERE.{first}+HERE.{second}*HERE.{second} > {fixed(most**2)})"
         for first, second, most in (("Y", "Z", OFF_AXIS), ("A", "B", OFF_DIRECTION))
@@ -70,8 +52,7 @@ def retract_to_krl(retract: Retract, name: str, version: str) -> str:
             f"DEF {name} ( )",
             EXT_BAS,
             "DECL FRAME HERE,BACK,GOAL",
-            *lines,
-            KRL_COMMENTS.rule,
+            *retract_head(retract, version, KRL_COMMENTS, SENTENCES),
             ";FOLD INI",
             "BAS (#INITMOV,0 )",
             f"BAS (#VEL_PTP,{PTP_SPEED} )",

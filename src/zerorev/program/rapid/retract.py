@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from zerorev.program.head import mark
 from zerorev.program.letters import fixed, settled
 from zerorev.program.rapid.controller import frames, refuse
-from zerorev.program.rapid.names import RAPID_COMMENTS, part_frame, procedure, rapid_label, tool
+from zerorev.program.rapid.names import RAPID_COMMENTS, part_frame, procedure, tool
 from zerorev.program.rapid.text import aggregate
 from zerorev.program.rapid.write import AFTERWARDS, LEAST_TURN_SPEED, OUTER_SPEEDS, SETTINGS, joined
 from zerorev.program.refusals import refuse_other_makers
-from zerorev.program.retract import Retract
+from zerorev.program.retract import DEEPER, OFF_AXIS, OFF_DIRECTION, Retract, retract_head
 
 __all__ = ["retract_to_rapid"]
-
-OFF_AXIS, OFF_DIRECTION = 1.0, 0.5  # [mm], [deg] by which the tool may stand beside the hole's axis
-DEEPER = 0.5  # [mm] below the deepest point of the motion
 
 SENTENCES = (
     "Run this program where the robot has stopped with the drill in this hole, before anything else is moved.",
@@ -44,28 +40,11 @@ def retract_to_rapid(retract: Retract, name: str, version: str) -> str:
     Raises:
         NotExportableError: the robot is not an ABB; what RAPID cannot say, or a controller refuses to run.
     """
-    program, hole = retract.program, retract.hole
+    program = retract.program
     refuse_other_makers("rapid", program.robot)
     refuse(program)
     end, deep = fixed(-retract.end * 1e3, 3), fixed(-retract.deepest * 1e3 + DEEPER, 3)
-    words = {
-        "off": f"{OFF_AXIS:g}", "turned": f"{OFF_DIRECTION:g}", "end": fixed(retract.end * 1e3, 3), "deep": deep,
-        "run": procedure(name),
-    }  # fmt: skip
-    begin = [
-        RAPID_COMMENTS.rule,
-        *RAPID_COMMENTS.lines(f"Written by zerorev {version}"),
-        *mark(program, RAPID_COMMENTS),
-    ]
-    for text in (
-        f"Out of hole {hole.number} of {program.listed}: {rapid_label(hole.id)}",
-        f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
-        *(f"{finding.level}: {finding.message}" for finding in retract.findings),
-    ):
-        begin += RAPID_COMMENTS.lines(text)
-    begin.append(RAPID_COMMENTS.sign)
-    for text in SENTENCES:
-        begin += RAPID_COMMENTS.lines(text.format(**words), first="- ")
+    begin = retract_head(retract, version, RAPID_COMMENTS, SENTENCES, run=procedure(name))
     speed = aggregate([settled(retract.feed * 1e3, 3), fixed(LEAST_TURN_SPEED, 1), *OUTER_SPEEDS])
     data = [*frames(program, name, retract.T_base_hole), f"LOCAL CONST speeddata out_speed:={speed};"]
     used = f"{tool(name)}\\WObj:={part_frame(name)}"
@@ -91,4 +70,4 @@ def retract_to_rapid(retract: Retract, name: str, version: str) -> str:
         "ENDIF",
         AFTERWARDS,
     ]
-    return joined(name, [*begin, RAPID_COMMENTS.rule], data, body)
+    return joined(name, begin, data, body)

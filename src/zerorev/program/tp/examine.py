@@ -10,7 +10,6 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.motion.kinematics import forward
 from zerorev.program.neutral import HoleProgram, Move, Program
-from zerorev.program.notes import turn_speed
 from zerorev.program.tp.names import argument
 from zerorev.program.tp.text import CM_MIN, DECIMALS, LONGEST_TEXT, joint_time, tip_speed
 
@@ -20,7 +19,6 @@ USUAL_FRAMES = 10  # tool and user frames of a controller
 LONGEST_TIME = 32_000  # [msec]
 FASTEST = 2.0  # [m/s]
 NOTICEABLE = 0.01  # share by which a feed may differ unsaid
-SLOW_TURN, FAST_TURN = float(np.deg2rad(100.0)), float(np.deg2rad(200.0))  # [rad/s]; above the second all are warned
 ROUNDED = float(np.deg2rad(0.5 * 10.0**-DECIMALS))  # [rad]
 NEAR_LIMIT = 5 * ROUNDED
 STRAIGHT_WRIST = float(np.deg2rad(5.0))  # [rad] of J5
@@ -132,9 +130,6 @@ def _hole(program: Program, hole: HoleProgram) -> Iterator[Finding]:
             "limit_margin_deg"
         )
         yield Finding("warning", "controller", message, hole.id)
-    if SLOW_TURN < (speed := turn_speed(hole)) <= FAST_TURN:
-        message = f"the tool turns at {np.rad2deg(speed):.0f} deg/s: see that the controller does not throttle the feed"
-        yield Finding("warning", "turn_speed", message, hole.id)
     if names := _unmoved(program, hole):
         message = (
             f"{' '.join(names)} moves by less than the {DECIMALS} decimals of joint values on a joint move at the "

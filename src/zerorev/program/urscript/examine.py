@@ -11,14 +11,13 @@ from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.program.letters import settled
 from zerorev.program.neutral import HoleProgram, Move, Program
-from zerorev.program.notes import segments, turn_speed
+from zerorev.program.notes import segments
 from zerorev.program.urscript.names import KEPT, URSCRIPT_NAMES
 from zerorev.program.urscript.write import FEW_DECIMALS
 
 __all__ = ["MOST_MOVES", "examine", "most_holes"]
 
 MOST_MOVES = 250  # of one file: RoboDK sends longer programs of this controller step by step from a PC
-SLOW_TURN, FAST_TURN = float(np.deg2rad(100.0)), float(np.deg2rad(200.0))  # [rad/s]; above the second all are warned
 SAME_RATE = 1e-6  # [rad/m] between two moves that are in line
 
 
@@ -35,7 +34,6 @@ def examine(program: Program) -> tuple[Finding, ...]:
         *(finding for hole in program.holes for finding in _overlaps(hole)),
         *_blends(program),
         *_payload(program),
-        *(finding for hole in program.holes for finding in _turns(hole)),
     )
 
 
@@ -127,11 +125,3 @@ def _payload(program: Program) -> tuple[Finding, ...]:
         "payload), or the arm sags, and a protective stop may leave the drill in the hole"
     )
     return (Finding("warning", "controller", message),)
-
-
-def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
-    """A movel has no speed of its turn, and nothing says at which one the controller cuts the feed."""
-    if not SLOW_TURN < (speed := turn_speed(hole)) <= FAST_TURN:
-        return ()
-    message = f"the tool turns at {np.rad2deg(speed):.0f} deg/s: see that the controller does not throttle the feed"
-    return (Finding("warning", "turn_speed", message, hole.id),)

@@ -5,19 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from zerorev.model._arrays import transform
-from zerorev.program.head import mark
 from zerorev.program.letters import fixed, settled
-from zerorev.program.names import label
 from zerorev.program.refusals import refuse_other_makers
-from zerorev.program.retract import Retract
+from zerorev.program.retract import DEEPER, OFF_AXIS, OFF_DIRECTION, Retract, retract_head
 from zerorev.program.urscript.controller import tool_and_payload
 from zerorev.program.urscript.text import INDENT, URSCRIPT_COMMENTS, pose
 from zerorev.program.urscript.write import ACCELERATION, FEW_DECIMALS
 
 __all__ = ["retract_to_urscript"]
 
-OFF_AXIS, OFF_DIRECTION = 1e-3, float(np.deg2rad(0.5))  # [m], [rad] by which the tool may stand beside the hole's axis
-DEEPER = 0.5e-3  # [m] below the deepest point of the motion
 Z_ALONG_X = transform(np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.zeros(3))
 """A frame with its Z along the X of another: the hole's frame as the tool of this language lies in it."""
 
@@ -52,10 +48,10 @@ def retract_to_urscript(retract: Retract, name: str, version: str) -> str:
     program = retract.program
     refuse_other_makers("urscript", program.robot)
     T_controller_hole = np.linalg.inv(program.robot.T_root_base) @ retract.T_base_hole @ Z_ALONG_X
-    end, deep = fixed(-retract.end, 6), fixed(-retract.deepest + DEEPER, 6)
-    off, turned = fixed(OFF_AXIS**2, 9), fixed(float(np.sin(OFF_DIRECTION)) ** 2, 9)
+    end, deep = fixed(-retract.end, 6), fixed(-retract.deepest + DEEPER * 1e-3, 6)
+    off, turned = fixed((OFF_AXIS * 1e-3) ** 2, 9), fixed(float(np.sin(np.deg2rad(OFF_DIRECTION))) ** 2, 9)
     body = [
-        *_head(retract, name, version),
+        *retract_head(retract, version, URSCRIPT_COMMENTS, SENTENCES, name=name),
         *tool_and_payload(program),
         "sync() # from here on the controller counts from this tool",
         f"local hole = {pose(T_controller_hole)}",
@@ -72,23 +68,3 @@ def retract_to_urscript(retract: Retract, name: str, version: str) -> str:
         f"v={settled(retract.feed, FEW_DECIMALS)}) # out along tool Z",
     ]
     return "\n".join([f"def {name}():", *(INDENT + line for line in body), "end", ""])
-
-
-def _head(retract: Retract, name: str, version: str) -> list[str]:
-    program, hole, comments = retract.program, retract.hole, URSCRIPT_COMMENTS
-    words = {
-        "name": name, "off": f"{OFF_AXIS * 1e3:g}", "turned": f"{np.rad2deg(OFF_DIRECTION):g}",
-        "end": fixed(retract.end * 1e3, 3), "deep": fixed((DEEPER - retract.deepest) * 1e3, 3),
-    }  # fmt: skip
-    facts = (
-        f"Out of hole {hole.number} of {program.listed}: {label(hole.id, comments)}",
-        f"Plan {program.name}, robot {program.robot.manufacturer} {program.robot.model}, tool {program.tool.name}",
-        *(f"{finding.level}: {finding.message}" for finding in retract.findings),
-    )
-    lines = [comments.rule, *comments.lines(f"Written by zerorev {version}"), *mark(program, comments)]
-    for text in facts:
-        lines += comments.lines(text)
-    lines.append(comments.sign)
-    for text in SENTENCES:
-        lines += comments.lines(text.format(**words), first="- ")
-    return [*lines, comments.rule]
