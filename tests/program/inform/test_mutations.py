@@ -6,13 +6,9 @@ from collections import Counter
 import pytest
 
 from oracles.inform_reader import read
+from oracles.judged import Judge
 from oracles.token_edits import Language, edits
-from zerorev.errors import InputError
-from zerorev.program.as_exported import expected
-from zerorev.program.dialect import ProgramFile
-from zerorev.program.export import export
 from zerorev.program.inform.dialect import INFORM
-from zerorev.verify.certificate.program import certify_program
 
 
 def harmless(kind, token, line):
@@ -39,21 +35,15 @@ def plan(plan_for):
 
 def hold(plan, count, seed):
     """Every edit to what it claims; how many there were of each kind and name."""
-    text, wanted, found = export(plan, version="test").text, expected(plan, INFORM), Counter()
-    original = INFORM.read((ProgramFile("here.JBI", text),))
-    assert certified(plan, wanted, original)
+    judge, found = Judge.of(plan, INFORM), Counter()
+    text, original = judge.text, judge.read(judge.text)
+    assert judge.certified(original)
     for kind, edited, name in edits(text, INFORM_EDITS, count, seed):
         found[kind, name] += 1
-        try:
-            program = INFORM.read((ProgramFile("here.JBI", edited),))
-        except InputError as refused:  # what is harmless may be refused all the same
-            said = str(refused)
-        else:
-            said = ""
-        if said:
-            assert re.search(r"\bline \d+", said), (kind, edited)
+        program, reasons = judge.judged(edited)
+        if program is None:  # what is harmless may be refused all the same
+            assert re.search(r"\bline \d+", reasons[0]), (kind, edited)
             continue
-        reasons = [reason for own in wanted.beside(program) for reason in own.wrong]
         if name is None:
             assert reasons, (kind, edited)
             assert re.search(r"\bline \d+", reasons[0]), (kind, reasons)
@@ -61,16 +51,11 @@ def hold(plan, count, seed):
             assert not reasons, (kind, reasons)
             moved = [abs(a.pulses - b.pulses).sum() for a, b in zip(read(text).moves, read(edited).moves, strict=True)]
             assert sorted(moved)[-2:] == [0, 1]
-            certified(plan, wanted, program)
+            judge.certified(program)
         else:
             assert not reasons, (kind, name, reasons)
             assert program == original, (kind, name)
     return found
-
-
-def certified(plan, wanted, program):
-    beside = wanted.beside(program)
-    return all(hole.certificate.verdict == "certified" for hole in certify_program(plan, program, beside).holes)
 
 
 def test_a_sample_of_edits(plan):

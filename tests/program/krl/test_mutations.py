@@ -5,7 +5,7 @@ from collections import Counter
 
 import pytest
 
-import zerorev as zr
+from oracles.judged import Judge
 from oracles.krl_harmless import PROOFS
 from oracles.krl_mutations import WAYS, mutations, tokens
 from oracles.krl_reader import commands
@@ -16,7 +16,6 @@ from zerorev.program.as_exported import expected
 from zerorev.program.export import export
 from zerorev.program.krl.dialect import KRL
 from zerorev.program.krl.read import read_krl
-from zerorev.verify.certificate.program import certify_program
 
 PROGRAMS = DATA / "program"
 
@@ -28,12 +27,12 @@ def plan(published, plan_of):
 
 def hold(plan, count, seed):
     """Every mutation of a plan's program to what it claims; how many there were of each name."""
-    text, wanted = export(plan, version="test").text, expected(plan, KRL)
-    original, reached, found = read_krl(text), commands(text), Counter()
-    assert certified(plan, wanted, original)
+    judge, found = Judge.of(plan, KRL), Counter()
+    text, original, reached = judge.text, judge.read(judge.text), commands(judge.text)
+    assert judge.certified(original)
     for kind, mutated, harmless in mutations(text, count, seed):
         found[kind, harmless] += 1
-        program, reasons = judged(wanted, mutated)
+        program, reasons = judge.judged(mutated)
         if harmless is None:
             assert reasons, (kind, mutated)
             assert re.search(r"\bline \d+", reasons[0]), (kind, reasons)
@@ -42,27 +41,13 @@ def hold(plan, count, seed):
         if harmless == "last printed digit":
             assert PROOFS[harmless](text, mutated), (kind, mutated)
             # as printed it is either proven, by ball arithmetic, or not: both are right
-            certified(plan, wanted, program)
+            judge.certified(program)
         else:
             assert PROOFS[harmless](text, mutated), (kind, harmless)
             assert commands(mutated) == reached, (kind, harmless)
             # the reader sees no difference, so that the certificate of the original is its own
             assert program == original, (kind, harmless)
     return found
-
-
-def judged(wanted, text):
-    """The program, and why it is refused or refuted, by reading and comparing alone; no ball arithmetic."""
-    try:
-        program = read_krl(text, "here.src")
-        return program, tuple(reason for own in wanted.beside(program) for reason in own.wrong)
-    except zr.InputError as refused:
-        return None, (str(refused),)
-
-
-def certified(plan, wanted, program):
-    beside = wanted.beside(program)
-    return all(hole.certificate.verdict == "certified" for hole in certify_program(plan, program, beside).holes)
 
 
 def test_a_sample_of_mutations(plan):

@@ -6,14 +6,11 @@ from collections import Counter
 import pytest
 
 import zerorev as zr
+from oracles.judged import Judge
 from oracles.makers import panel_plan, stand_in
 from oracles.rapid_reader import commands
 from oracles.token_edits import Language, edits
-from zerorev.program.as_exported import expected
-from zerorev.program.export import export
 from zerorev.program.rapid.dialect import RAPID
-from zerorev.program.rapid.read import read_rapid
-from zerorev.verify.certificate.program import certify_program
 
 LANGUAGE = Language(
     token=re.compile(r'"[^"]*"|:=|-?\d+(?:\.\d+)?(?![\w.])|[\[\](),;\\]|\w+'),
@@ -40,11 +37,11 @@ def plan():
 
 def hold(plan, count, seed):
     """Every edit of a plan's program to what it claims; how many there were of each name."""
-    text, wanted = export(plan, version="test").text, expected(plan, RAPID)
-    original, reached, found = read_rapid(text), commands(text), Counter()
-    assert certified(plan, wanted, original)
+    judge, found = Judge.of(plan, RAPID), Counter()
+    text, original, reached = judge.text, judge.read(judge.text), commands(judge.text)
+    assert judge.certified(original)
     for kind, edited, harmless in edits(text, LANGUAGE, count, seed):
-        program, reasons = judged(wanted, edited)
+        program, reasons = judge.judged(edited)
         if not reasons and harmless is None:
             harmless = unchanged(edited, reached, program, original)
             assert harmless, (kind, difference(text, edited))
@@ -53,7 +50,7 @@ def hold(plan, count, seed):
             assert reasons or unchanged(edited, reached, program, original), (kind, difference(text, edited))
         elif harmless == "last printed digit":
             if not reasons:  # as printed it is either proven, by ball arithmetic, or not: both are right
-                certified(plan, wanted, program)
+                judge.certified(program)
             else:
                 assert not inside_a_point(text, edited), (reasons, difference(text, edited))
         elif harmless is not None:
@@ -80,20 +77,6 @@ def inside_a_point(text, edited):
     at = next(k for k, (a, b) in enumerate(zip(old + "\0", new + "\0", strict=False)) if a != b)
     word = re.search(r"[-\d.]*$", old[:at])[0] + re.match(r"[-\d.]*", old[at:])[0]
     return "." in word and old[:at].count("[") > old[:at].count("]")
-
-
-def judged(wanted, text):
-    """The program, and why it is refused or refuted, by reading and comparing alone; no ball arithmetic."""
-    try:
-        program = read_rapid(text, "here.mod")
-        return program, tuple(reason for own in wanted.beside(program) for reason in own.wrong)
-    except zr.InputError as refused:
-        return None, (str(refused),)
-
-
-def certified(plan, wanted, program):
-    beside = wanted.beside(program)
-    return all(hole.certificate.verdict == "certified" for hole in certify_program(plan, program, beside).holes)
 
 
 def test_a_sample_of_edits(plan):

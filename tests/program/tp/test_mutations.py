@@ -6,15 +6,10 @@ from itertools import pairwise
 
 import pytest
 
-import zerorev as zr
+from oracles.judged import Judge
 from oracles.makers import position_plan
 from oracles.token_edits import Language, edits
-from zerorev.program.as_exported import expected
-from zerorev.program.dialect import ProgramFile
-from zerorev.program.export import export
 from zerorev.program.tp.dialect import TP
-from zerorev.program.tp.read import read_tp
-from zerorev.verify.certificate.program import certify_program
 
 
 def harmless(kind, token, line):
@@ -36,40 +31,26 @@ MUST_PASS = ("last printed digit",)
 
 
 @pytest.fixture(scope="module")
-def plan(fanuc, for_tp):
-    return position_plan(fanuc, 2, **for_tp)
+def judge(fanuc, for_tp):
+    return Judge.of(position_plan(fanuc, 2, **for_tp), TP)
 
 
 @pytest.fixture(scope="module")
-def text(plan):
-    return export(plan, version="test").text
+def text(judge):
+    return judge.text
 
 
-@pytest.fixture(scope="module")
-def wanted(plan):
-    return expected(plan, TP)
-
-
-def judged(wanted, text):
-    """The program, and why it is refused or refuted, by reading and comparing alone; no ball arithmetic."""
-    try:
-        program = TP.read([ProgramFile("here.ls", text)])
-        return program, tuple(reason for own in wanted.beside(program) for reason in own.wrong)
-    except zr.InputError as refused:
-        return None, (str(refused),)
-
-
-def hold(plan, text, wanted, count, seed):
-    original, found = read_tp(text), Counter()
-    for edit in edits(text, LANGUAGE, count, seed):
-        program, reasons = judged(wanted, edit.text)
+def hold(judge, count, seed):
+    original, found = judge.read(judge.text), Counter()
+    for edit in edits(judge.text, LANGUAGE, count, seed):
+        program, reasons = judge.judged(edit.text)
         found[edit.kind, edit.harmless, not reasons] += 1
         if reasons:
             assert edit.harmless not in MUST_PASS, (edit.kind, reasons)
             assert re.search(r"\bline \d+", reasons[0]), (edit.kind, reasons)
         elif edit.harmless == "last printed digit":
             # as printed it is either proven, by ball arithmetic, or not: both are right
-            certify_program(plan, program, wanted.beside(program))
+            judge.certified(program)
         else:
             assert edit.harmless is not None, (edit.kind, edit.text)
             # the reader sees no difference, so that the certificate of the original is its own
@@ -77,14 +58,14 @@ def hold(plan, text, wanted, count, seed):
     return found
 
 
-def test_a_sample_of_edits(plan, text, wanted):
-    found = hold(plan, text, wanted, 120, seed=1)
+def test_a_sample_of_edits(judge):
+    found = hold(judge, 120, seed=1)
     assert sum(count for (_, name, _), count in found.items() if name is None) > 60
 
 
 @pytest.mark.long
-def test_five_hundred_edits(plan, text, wanted):
-    found = hold(plan, text, wanted, 500, seed=2)
+def test_five_hundred_edits(judge):
+    found = hold(judge, 500, seed=2)
     assert len({kind for kind, _, _ in found}) == 11
     assert {name for _, name, passed in found if passed} >= {"last printed digit", "zeros of a number", "white space"}
     assert sum(count for (_, name, _), count in found.items() if name is None) > 250
@@ -104,17 +85,17 @@ def parts(text):
     return head, listing.split("\n"), rest
 
 
-def test_lines_left_out_doubled_or_swapped(text, wanted):
+def test_lines_left_out_doubled_or_swapped(text, judge):
     head, lines, rest = parts(text)
     assert numbered(head, lines, rest) == text
     stated = [k for k, line in enumerate(lines) if ":  !" not in line]
     for k in stated:
-        assert judged(wanted, numbered(head, lines[:k] + lines[k + 1 :], rest))[1]
-        assert judged(wanted, numbered(head, [*lines[: k + 1], *lines[k:]], rest))[1]
+        assert judge.judged(numbered(head, lines[:k] + lines[k + 1 :], rest))[1]
+        assert judge.judged(numbered(head, [*lines[: k + 1], *lines[k:]], rest))[1]
     for first, second in pairwise(stated[2:]):
         swapped = lines.copy()
         swapped[first], swapped[second] = lines[second], lines[first]
-        assert judged(wanted, numbered(head, swapped, rest))[1]
+        assert judge.judged(numbered(head, swapped, rest))[1]
 
 
 STATEMENTS = [
@@ -125,11 +106,11 @@ STATEMENTS = [
 
 
 @pytest.mark.parametrize("statement", STATEMENTS)
-def test_a_statement_put_in_anywhere(statement, text, wanted):
+def test_a_statement_put_in_anywhere(statement, text, judge):
     head, lines, rest = parts(text)
     stated = [k for k, line in enumerate(lines) if ":  !" not in line]
     for k in [*stated, len(lines)]:
-        reasons = judged(wanted, numbered(head, [*lines[:k], f"   1:  {statement};", *lines[k:]], rest))[1]
+        reasons = judge.judged(numbered(head, [*lines[:k], f"   1:  {statement};", *lines[k:]], rest))[1]
         assert reasons
         assert "line" in reasons[0]
 
@@ -148,15 +129,15 @@ OPTIONS = [
 
 
 @pytest.mark.parametrize("option", OPTIONS)
-def test_an_option_of_a_motion(option, text, wanted):
+def test_an_option_of_a_motion(option, text, judge):
     found = re.findall(r"P\[\d+\] \S+ (?:FINE|CNT100)", text)
     assert len(found) > 4
     for motion in found:
-        assert judged(wanted, text.replace(motion, f"{motion} {option}"))[1]
+        assert judge.judged(text.replace(motion, f"{motion} {option}"))[1]
 
 
-def test_remarks_are_free(text, wanted):
+def test_remarks_are_free(text, judge):
     head, lines, rest = parts(text)
     other = [":  ! ours ;" if ":  !" in line else line for line in lines]
     other = [f"   1{line}" if line.startswith(":") else line for line in [*other, ":  ! the end ;"]]
-    assert judged(wanted, numbered(head, other, rest)) == (read_tp(text), ())
+    assert judge.judged(numbered(head, other, rest)) == (judge.read(text), ())

@@ -5,14 +5,10 @@ from collections import Counter
 
 import pytest
 
-import zerorev as zr
+from oracles.judged import Judge
 from oracles.token_edits import Language, edits
 from oracles.urscript_reader import ScriptError, commands
-from zerorev.program.as_exported import expected
-from zerorev.program.dialect import ProgramFile
-from zerorev.program.export import export
 from zerorev.program.urscript.dialect import URSCRIPT
-from zerorev.verify.certificate.program import certify_program
 
 LANGUAGE = Language(
     token=re.compile(r"p\[|[A-Za-z_]\w*|-?\d+(?:\.\d+)?|[\[\](),=:]"),
@@ -33,15 +29,6 @@ LANGUAGE = Language(
 @pytest.fixture(scope="module")
 def plan(plan_called):
     return plan_called("free leg")
-
-
-def judged(wanted, text):
-    """The program, and why it is refused or refuted, by reading and comparing alone; no ball arithmetic."""
-    try:
-        program = URSCRIPT.read((ProgramFile("free_leg.script", text),))
-        return program, tuple(reason for own in wanted.beside(program) for reason in own.wrong)
-    except zr.InputError as refused:
-        return None, (str(refused),)
 
 
 def within_brackets(old, new):
@@ -65,10 +52,10 @@ def harmless(text, edited):
 
 def hold(plan, count, seed):
     """Every edit of a plan's program to what it claims; how many there were of each kind and name."""
-    text, wanted, found = export(plan, version="test").text, expected(plan, URSCRIPT), Counter()
-    original = URSCRIPT.read((ProgramFile("free_leg.script", text),))
+    judge, found = Judge.of(plan, URSCRIPT), Counter()
+    text, original = judge.text, judge.read(judge.text)
     for edit in edits(text, LANGUAGE, count, seed):
-        program, reasons = judged(wanted, edit.text)
+        program, reasons = judge.judged(edit.text)
         name = edit.harmless
         if name is None and harmless(text, edit.text):
             name = "white space or comment"
@@ -84,7 +71,7 @@ def hold(plan, count, seed):
                 assert program == original, edit.kind
             elif found[edit.kind, name] <= 3:
                 # as printed it is either proven or not: both are right
-                certify_program(plan, program, wanted.beside(program))
+                judge.certified(program)
     return found
 
 
