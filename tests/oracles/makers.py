@@ -60,7 +60,7 @@ _KNOWN: dict[object, Plan] = {}
 
 def _planned(robot: Robot, holes: tuple[Hole, ...], name: str, **settings: object) -> Plan:
     chosen = Settings(**({"min_rate": 0.0, "proof_boxes": 0} | settings))
-    key = (robot.name, robot.manufacturer, name, len(holes), *holes[0].target, repr(chosen))
+    key = (repr(robot), name, len(holes), *holes[0].target, repr(chosen))
     if key not in _KNOWN:
         _KNOWN[key] = plan_job(Job(robot, read_tool("thesis_drill"), holes, chosen, name=name))
     return _KNOWN[key]
