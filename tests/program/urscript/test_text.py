@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from zerorev.errors import InputError
 from zerorev.model.written import WrittenFrame
 from zerorev.program.urscript.names import KEPT, URSCRIPT_NAMES
-from zerorev.program.urscript.source import alike, statements, words
+from zerorev.program.urscript.source import URSCRIPT_WORDS, alike, statements
 from zerorev.program.urscript.text import pose, rotation_vector
 from zerorev.verify.printed import frame_of
 
@@ -66,11 +66,11 @@ def test_printed_poses_are_read_as_they_were():
 
 
 def test_words():
-    assert words("movel(pose_trans(part, p[0.1, -2]), a=0.5)", refuse) == (
+    assert URSCRIPT_WORDS.words("movel(pose_trans(part, p[0.1, -2]), a=0.5)", refuse) == (
         "movel", "(", "pose_trans", "(", "part", ",", "p[", Decimal("0.1"), ",", Decimal(-2), "]", ")", ",", "a", "=",
         Decimal("0.5"), ")",
     )  # fmt: skip
-    assert words('say("p[1] (x)", True)', refuse)[2] == '"p[1] (x)"'
+    assert URSCRIPT_WORDS.words('say("p[1] (x)", True)', refuse)[2] == '"p[1] (x)"'
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_words():
 )
 def test_other_words_are_refused(text):
     with pytest.raises(InputError, match="neither a name nor a number"):
-        words(text, refuse)
+        URSCRIPT_WORDS.words(text, refuse)
 
 
 def test_statements_have_no_comments():
@@ -98,7 +98,9 @@ def test_statements_have_no_comments():
     ],
 )
 def test_alike_within_one_last_digit_of_poses_and_joints_alone(number, new, same):
-    wanted = words("movel(pose_trans(part, p[0.10, 0.2, 0.3, 0.4, 0.5, 0.6]), a=0.5, v=0.0050, r=0.0010)", refuse)
+    wanted = URSCRIPT_WORDS.words(
+        "movel(pose_trans(part, p[0.10, 0.2, 0.3, 0.4, 0.5, 0.6]), a=0.5, v=0.0050, r=0.0010)", refuse
+    )
     at = [k for k, word in enumerate(wanted) if isinstance(word, Decimal)][number]
     assert alike([*wanted[:at], Decimal(new), *wanted[at + 1 :]], wanted) is same
     assert not alike(wanted[:-1], wanted)

@@ -76,13 +76,14 @@ def test_another_controller_blends_straight_moves_by_any_curve():
 
 def test_the_check_asks_for_every_curve_where_the_controllers_is_not_known(monkeypatch):
     """So that planning takes another motion where one of them turns a joint round; a KUKA's is taken for a parabola."""
+    plans = {
+        maker: position_plan(stand_in(maker), 1, min_rate=np.deg2rad(10), corner="blend") for maker in ("ABB", "KUKA")
+    }
     asked = []
     monkeypatch.setattr(check, "mix_holds", lambda *blend: asked.append(blend[-1]) or ["A1 turns round"])
     for maker, times in (("ABB", 1), ("KUKA", 0)):
         asked.clear()
-        plan = position_plan(stand_in(maker), 1, min_rate=np.deg2rad(10), corner="blend")
-        (hole,) = plan.holes
-        asked.clear()
-        verified = check.verify_hole(plan.robot, plan.tool, plan.settings, hole)
+        plan = plans[maker]
+        verified = check.verify_hole(plan.robot, plan.tool, plan.settings, plan.holes[0])
         assert asked == ["one_way"] * times
         assert ("A1 turns round" in verified.failures) == bool(times)
