@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ from zerorev.errors import InputError
 
 __all__ = [
     "CONTROLLERS",
+    "MOST_TILT",
     "Controller",
     "ControllerName",
     "CornerKind",
@@ -23,6 +25,9 @@ __all__ = [
 
 CornerKind = Literal["blend", "joint", "stop"]
 ControllerName = Literal["krl", "rapid", "tp", "urscript", "inform"]
+
+MOST_TILT = math.radians(0.01)
+"""Greatest angle of the tool against the drill axis on joint moves at the corner [rad]."""
 
 
 @dataclass(frozen=True)

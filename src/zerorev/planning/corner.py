@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.corner import MOST_TILT
 from zerorev.model.finding import Finding
 from zerorev.model.plan import Corner, HolePlan, Motion
 from zerorev.model.settings import Settings
@@ -14,10 +15,9 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_corner import joint_corner, off_axis_and_tilt
 from zerorev.motion.joint_path import joints_along
 
-__all__ = ["MOST_TILT", "corner_findings", "corner_of", "countersink_findings"]
+__all__ = ["corner_findings", "corner_of", "countersink_findings"]
 
 CLOSE = 9  # samples from one end of a joint move to the other
-MOST_TILT = float(np.deg2rad(0.01))  # of the tool against the drill axis on joint moves
 
 
 def corner_of(drilling: Drilling, settings: Settings, motion: Motion) -> Corner:

@@ -122,9 +122,10 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
             answer = replace(answer, findings=(*answer.findings, *found))
             return _with_deepest(answer, settings, replace(deepest, depth=shorter.hole.depth))
         why = why or (answer.verified.failures[0] if answer.verified else "it cannot be run")
-    message = f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
-    findings = (Finding("error", "verification", message, hole.id),)
-    return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=findings, deepest=0.0)
+    none = _none_passes(
+        drilling, f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
+    )
+    return replace(none, deepest=0.0)
 
 
 def _rejected(what: str, why: str, hole: Hole) -> Finding:
@@ -160,9 +161,7 @@ def _planned(drilling: Drilling, settings: Settings, *best: Candidate) -> HolePl
             assert answer.score is not None
             rejected = _rejected(f"a motion with {answer.score.reversals} reversals", why, drilling.hole)
             return replace(tried, findings=(*tried.findings, rejected))
-    message = f"no motion was found that passes the check; of the best one: {why}"
-    findings = (Finding("error", "verification", message, drilling.hole.id),)
-    return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=findings)
+    return _none_passes(drilling, f"no motion was found that passes the check; of the best one: {why}")
 
 
 def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle) -> HolePlan:
@@ -172,7 +171,13 @@ def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle) -> Hole
     if answer.verified is None or answer.verified.passed:
         return answer
     why = answer.verified.failures[0]
-    message = f"no motion that breaks chips was found that passes the check; of the last one: {why}"
+    return _none_passes(
+        drilling, f"no motion that breaks chips was found that passes the check; of the last one: {why}"
+    )
+
+
+def _none_passes(drilling: Drilling, message: str) -> HolePlan:
+    """The answer of a hole of which no motion passes the check."""
     findings = (Finding("error", "verification", message, drilling.hole.id),)
     return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=findings)
 

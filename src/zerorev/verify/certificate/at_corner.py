@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from flint import arb
 
+from zerorev.model.corner import MOST_TILT
 from zerorev.model.plan import Certificate, HolePlan
 from zerorev.model.robot import Robot
 from zerorev.model.settings import Settings
@@ -24,7 +25,6 @@ from zerorev.verify.joint_corner import corner_figures
 
 __all__ = ["joint_corners", "near_the_axis", "planned_corner"]
 
-TILT = math.radians(0.01)  # that a job allows
 ABOVE, OVER, TURNED = 1.1, 1e-6, math.radians(1e-4)  # a bound may be so much above what is met, [m], [rad]
 
 
@@ -72,7 +72,7 @@ def near_the_axis(
     """
     stated = hole_plan.corner
     tolerance = max(settings.corner_tolerance, 0.0 if stated is None else stated.off_axis) + slack
-    tilt = max(TILT, 0.0 if stated is None else stated.tilt) + slack
+    tilt = max(MOST_TILT, 0.0 if stated is None else stated.tilt) + slack
     refuted, undecided = list[str](), list[str]()
     reversing = () if hole_plan.score is None else hole_plan.score.reversals_per_joint
     for place, joints in corners:
