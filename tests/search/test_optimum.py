@@ -15,7 +15,7 @@ from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluate
-from zerorev.planning import hole as planning
+from zerorev.planning import answered as planning
 from zerorev.planning.hole import plan, plan_deepest
 from zerorev.program.lead_in import find_lead_in
 from zerorev.search import exact

@@ -28,8 +28,9 @@ from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
+from zerorev.planning.answered import cycle_time, motion_findings
 from zerorev.planning.corner import corner_of
-from zerorev.planning.hole import cycle_time, lever_findings, motion_findings, plan, plan_deepest
+from zerorev.planning.hole import lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
 from zerorev.planning.sequence import moves_of, time_of
 from zerorev.planning.tool_turn import with_tool_turn

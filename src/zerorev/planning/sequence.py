@@ -29,7 +29,7 @@ from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation, evaluated
 from zerorev.motion.joint_path import FULL_TURN
-from zerorev.planning.hole import with_another_motion
+from zerorev.planning.answered import with_another_motion
 from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.program.between import accelerations, moves_between, time_of_moves
 from zerorev.program.ways import Stop, Way, stop_of
