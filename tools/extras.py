@@ -22,6 +22,7 @@ FOR_USERS = {
     "cluster": "`--scheduler`: work on several machines; includes `maps`",
     "view": "the app (`view`) and `replay`; includes `certify`, `figures` and `maps`",
     "methods": "the methods of pymoo and cma in `methods`",
+    "cad": "holes and parts from CAD: STEP, DXF, STL",
     "report": "`plan` and `check --report`, `reproduce`: plan or thesis as one page; includes `figures` and `maps`",
 }
 HEAD = """\

@@ -13,14 +13,15 @@ import time
 import pytest
 
 from oracles import hogs
+from zerorev import apart
+from zerorev.apart import Apart, Stopped
 from zerorev.errors import InputError
 from zerorev.files.io import job_from_text, plan_to_json, write_plan
 from zerorev.files.job_data import job_files
 from zerorev.files.text import json_text
 from zerorev.files.yaml_text import yaml_text
 from zerorev.planning.job import plan_job
-from zerorev.web import apart, files
-from zerorev.web.apart import Apart, Stopped
+from zerorev.web import files
 from zerorev.web.aside import aside
 
 JOB = {
@@ -160,7 +161,7 @@ def test_a_process_that_dies_is_refused():
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the end of the child")
 def test_it_ends_with_the_app_also_where_that_is_killed():
-    code = "from oracles import hogs; from zerorev.web.apart import Apart\n"
+    code = "from oracles import hogs; from zerorev.apart import Apart\n"
     code += "for process in Apart(hogs.spin).results([]): print(process, flush=True)"
     parent = subprocess.Popen(
         [sys.executable, "-c", f"import sys; sys.path[:] = {sys.path!r}; {code}"], stdout=subprocess.PIPE, text=True

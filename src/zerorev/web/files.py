@@ -54,7 +54,7 @@ def cut(content: bytes) -> Iterator[bytes]:
     return (content[start : start + BYTES] for start in range(0, len(content), BYTES))
 
 
-# --- tasks of `zerorev.web.apart` -------------------------------------------------------------------------------------
+# --- tasks of `zerorev.apart` -------------------------------------------------------------------------------------
 
 
 def read(given: Iterator[Any]) -> Iterator[Any]:

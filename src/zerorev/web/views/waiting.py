@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from nicegui import background_tasks, ui
 
+from zerorev.apart import Apart, Stopped, Task
 from zerorev.errors import ZerorevError
-from zerorev.web.apart import Apart, Stopped, Task
 from zerorev.web.aside import aside
 from zerorev.web.views.notices import failed
 

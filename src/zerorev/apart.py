@@ -1,7 +1,7 @@
-"""Work of a moment in a process of its own, where a thread would hold up every page: reading and writing of files.
+"""Work of a moment in a process of its own: reading and writing of files.
 
 Parsers and checkers written in C keep Python's lock while they work, for seconds with a large file, for minutes with a
-hostile one. A process can be given a limit, too, and be stopped at any moment.
+hostile one, and some crash. A process can be given a limit, too, and be stopped at any moment.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ __all__ = ["Apart", "Stopped", "Task"]
 
 MOST_MEMORY = 4 * 2**30  # [bytes]
 MOST_SECONDS = 120  # of a processor
-BEGIN = "import sys; sys.path[:] = {path!r}; from zerorev.web.apart import serve; serve()"
+BEGIN = "import sys; sys.path[:] = {path!r}; from zerorev.apart import serve; serve()"
 
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}  # each thread takes address space
 
@@ -55,7 +55,7 @@ class Apart:
         Raises:
             ZerorevError: as the task raises it.
             Stopped: it was stopped.
-            InputError: it took too much memory or too long.
+            InputError: it took too much memory or too long, or crashed.
         """
         command = [sys.executable, "-c", BEGIN.format(path=sys.path)]
         process = self._process = subprocess.Popen(
@@ -76,7 +76,7 @@ class Apart:
             if self._stopped:
                 raise Stopped from None
             raise InputError(
-                "cannot be taken: it needs too much memory or time",
+                "cannot be taken: its reader fails, or needs too much memory or time",
                 accepted=f"what is done within {MOST_MEMORY // 2**30} GiB and {MOST_SECONDS} s",
             ) from None
         finally:

@@ -1,0 +1,1 @@
+"""Holes and shapes out of CAD files: STEP, DXF, STL."""
