@@ -11,6 +11,7 @@ from zerorev.cell.followed import STEP
 from zerorev.cell.motions import compared
 from zerorev.cell.reference import Manner
 from zerorev.errors import InputError
+from zerorev.model.cycle import Cycle
 
 
 def reference_of(published_plan, number=0, name="plan", **manner):
@@ -37,6 +38,14 @@ def test_the_corner_is_rounded_by_half_its_radius(published_plan):
     blunt = reference_of(published_plan, feed=0.02, corner=8e-3, smoothing=0.0, acceleration=100.0)
     assert sharp.standoff.min() == pytest.approx(0.0, abs=3e-5)
     assert blunt.standoff.min() == pytest.approx(4e-3, abs=3e-5)
+
+
+def test_where_the_tool_stands_the_tip_rests_as_long_as_asked_for(published_plan):
+    standing = replace(published_plan, settings=replace(published_plan.settings, cycle=Cycle(dwell=0.5)))
+    found = reference_of(standing, feed=0.02, smoothing=0.0, acceleration=100.0)
+    rests = np.count_nonzero(found.standoff < 1e-9) * STEP
+    assert rests == pytest.approx(0.5, abs=5 * STEP)
+    assert np.ptp(found.q[found.standoff < 1e-9], axis=0).max() < 1e-9
 
 
 def test_a_feed_so_small_that_no_memory_would_hold_it_is_refused(published_plan):

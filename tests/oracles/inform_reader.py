@@ -39,6 +39,7 @@ class InformJob:
     moves: list[Move] = field(default_factory=list)
     calls: list[tuple[int, str]] = field(default_factory=list)  # after how many moves, and what
     comments: list[str] = field(default_factory=list)
+    waits: list[tuple[int, float]] = field(default_factory=list)  # after how many moves, and how long [s]
 
     def holes(self) -> list[list[Move]]:
         """The moves, one list per hole: each begins with the last stopping MOVJ that leads to it."""
@@ -90,6 +91,10 @@ def read(text: str) -> InformJob:
             ):
                 raise InformError(line)
             job.moves.append(Move(move[1], counts[int(move[2])], float(move[4]), int(move[5])))
+        elif wait := re.fullmatch(r"TIMER T=(\d{1,3}\.\d\d)", line):
+            if not job.moves or job.moves[-1].level:
+                raise InformError(f"{line} while the robot moves")
+            job.waits.append((len(job.moves), float(wait[1])))
         elif call := re.fullmatch(r"CALL JOB:([A-Za-z0-9_-]{1,32})", line):
             job.calls.append((len(job.moves), call[1]))
         else:

@@ -62,3 +62,13 @@ def test_a_tool_that_leaves_the_axis_by_more_than_allowed_is_refuted():
     certificate = certify_hole(plan.robot, plan.tool, strict, stated)
     assert certificate.verdict == "refuted"
     assert "the tool leaves the drill axis by" in certificate.reasons[0]
+
+
+def test_where_the_tool_is_to_stand_the_corner_is_a_stop(plans):
+    plan = plans[1, "single"]
+    (hole,) = plan.holes
+    standing = replace(hole, hole=replace(hole.hole, cycle=Cycle(dwell=0.1)))
+    verified = verify_hole(plan.robot, plan.tool, plan.settings, standing)
+    assert "the corner is of kind joint, asked is stop" in verified.failures
+    settings = replace(plan.settings, cycle=Cycle(dwell=0.1))
+    assert "the corner is of kind joint, asked is stop" in verify_hole(plan.robot, plan.tool, settings, hole).failures

@@ -54,12 +54,14 @@ class Track:
         points: stand-off [m] and spin [rad], shape (n, 2).
         feed: of the moves between them [m/s], shape (n - 1,).
         blend: radii at the points [m], shape (n,); 0 at the first and the last.
+        wait: for which the tool stands at the points [s], shape (n,).
         start: joints at the first point, with turns [rad], shape (6,).
     """
 
     points: Array
     feed: Array
     blend: Array
+    wait: Array
     start: Array
 
 
@@ -79,7 +81,7 @@ def track_of(program: HoleProgram, manner: Manner) -> Track:
         length = np.abs(np.diff(points[:, 0]))
         corner = program.corner + 1
         blend[corner] = min(manner.corner, length[corner - 1] / 2, length[corner] / 2)
-    return Track(points, feed, blend, first.joints)
+    return Track(points, feed, blend, np.array([0.0, *(move.wait for move in moves)]), first.joints)
 
 
 def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> Followed:
@@ -111,7 +113,7 @@ def followed(drilling: Drilling, branch: int, track: Track, manner: Manner) -> F
 
 
 def _at_feed(drilling: Drilling, branch: int, track: Track, manner: Manner, slowed: float) -> Followed:
-    lasts = float((np.abs(np.diff(track.points[:, 0])) / track.feed).sum())
+    lasts = float((np.abs(np.diff(track.points[:, 0])) / track.feed).sum() + track.wait.sum())
     if lasts > LONGEST:
         raise InputError(
             f"the motion takes {lasts:,.0f} s at this feed",
@@ -173,6 +175,8 @@ def _pieces(track: Track) -> Sequence[tuple[float, Array, Array, Array, float, f
         if run > 0:
             found.append((run / speed, at, (at + enter) / 2, enter, speed / run, 0.0))
         at = enter
+        if track.wait[k] > 0:
+            found.append((float(track.wait[k]), at, at, at, 1 / float(track.wait[k]), 0.0))
         if radius > 0:
             after, away = points[k + 1], track.feed[k]
             leave = target + (after - target) * (radius / abs(after[0] - target[0]))

@@ -182,7 +182,8 @@ class PlanHole(Form):
         description="a mapping of standoff_mm, psi_deg and branch as the job fixed them; or null: it fixed none",
     )
     cycle: CycleForm | None = Field(
-        default=None, description="a mapping of kind, depth_mm and back_mm: how it is drilled; or null: as the job says"
+        default=None,
+        description="a mapping of kind, depth_mm, back_mm and dwell_s: how it is drilled; or null: as the job says",
     )
     status: Literal["planned", "evaluated", "infeasible"] = Field(
         description="planned (searched for), evaluated (given, not searched for) or infeasible (no motion at all)"

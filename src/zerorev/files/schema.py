@@ -85,7 +85,8 @@ class SettingsForm(Form):
     )
     cycle: CycleForm = Field(
         default=CycleForm(),
-        description="a mapping of kind, depth_mm and back_mm: how each hole is drilled that does not say so itself",
+        description="a mapping of kind, depth_mm, back_mm and dwell_s: how each hole is drilled that does not say so "
+        "itself",
     )
 
 
@@ -134,7 +135,8 @@ class HoleForm(Form):
         default=None, description="text or a whole number: with which it is drilled where the order is by groups"
     )
     cycle: CycleForm | None = Field(
-        default=None, description="a mapping of kind, depth_mm and back_mm: how it is drilled; or null: as the job says"
+        default=None,
+        description="a mapping of kind, depth_mm, back_mm and dwell_s: how it is drilled; or null: as the job says",
     )
 
     @model_validator(mode="before")

@@ -148,7 +148,9 @@ class Turning:
     law: str
 
 
-def turning_of(controller: str | None, corner: CornerKind | None, blend: float, measured: float | None) -> Turning:
+def turning_of(
+    controller: str | None, corner: CornerKind | None, blend: float, measured: float | None, dwell: float = 0.0
+) -> Turning:
     """How the corner is passed.
 
     A blend is taken for a parabola, which turns back half its radius short; every symmetric curve whose speed changes
@@ -159,12 +161,18 @@ def turning_of(controller: str | None, corner: CornerKind | None, blend: float, 
         corner: as asked for; None: as usual for the controller.
         blend: radius, or reach of the joint moves, as asked for [m]; 0 is a stop.
         measured: depth lost, as measured [m]; None: not measured.
+        dwell: for which the tool stands there [s].
 
     Raises:
         InputError: a stop with another kind, or a kind that is not offered for the controller.
     """
     known = known_controller(controller)
-    kind = corner or ("stop" if blend == 0 else known.usual)
+    if dwell > 0 and corner not in (None, "stop"):
+        raise InputError(
+            f"a corner of kind {corner} beside a dwell of {dwell:g} s: where the tool stands, nothing is blended",
+            where="corner", accepted="stop, or none; or dwell_s: 0",
+        )  # fmt: skip
+    kind = corner or ("stop" if blend == 0 or dwell > 0 else known.usual)
     if blend == 0 and kind != "stop":
         raise InputError(
             f"a corner of kind {kind} has no room in a blend of 0", where="corner", accepted="stop, or blend_mm above 0"

@@ -1,4 +1,4 @@
-"""How a hole is drilled: in one go, or drawing the drill back on the way to break the chips."""
+"""How a hole is drilled: in one go, or drawing the drill back to break the chips; and how long the tool dwells."""
 
 from __future__ import annotations
 
@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
 from zerorev.model.stated import Choice, Number, check, with_attributes
-from zerorev.model.units import MM
+from zerorev.model.units import MM, S
 
 if TYPE_CHECKING:
     from zerorev.model._arrays import Array
 
-__all__ = ["MOST_BACK", "Cycle", "CycleKind"]
+__all__ = ["LONGEST_DWELL", "MOST_BACK", "Cycle", "CycleKind"]
 
 CycleKind = Literal["single", "chip_break"]
 MOST_PECKS = 200
 MOST_BACK = 2e-3  # [m] that a drill is drawn back within one motion: further is a retract
+LONGEST_DWELL = 10.0  # [s]: two or three turns of the slowest spindle are far shorter
+HUNDREDTHS = 100.0  # per second: the coarsest clock of a controller counts them, so that none has to round
 
 
 @dataclass(frozen=True)
@@ -38,10 +40,24 @@ class Cycle:
     back: Annotated[
         float, Number("how far the tool draws back to break them, at the feed of the plunge", MM, above=0)
     ] = 0.3e-3
+    dwell: Annotated[
+        float,
+        Number(
+            "how long the tool dwells at the target; 0: not at all",
+            S,
+            least=0,
+            to=LONGEST_DWELL,
+            note="In hundredths; it stands there, with all joints at rest",
+        ),
+    ] = 0.0
 
     def __post_init__(self) -> None:
         """Check ranges, and that a depth is there where chips are broken."""
         check(self)
+        if abs(self.dwell * HUNDREDTHS - round(self.dwell * HUNDREDTHS)) > 1e-9:
+            raise InputError(
+                f"a dwell of {self.dwell:g} s", where="cycle, dwell_s", accepted="hundredths of a second, e.g. 0.12"
+            )
         if self.kind == "chip_break" and self.depth is None:
             raise InputError("breaks chips, but not how often", where="cycle", accepted="depth_mm beside it, e.g. 5")
         if self.back > MOST_BACK:
@@ -53,6 +69,16 @@ class Cycle:
                 f"draws back by {self.back * 1e3:g} mm each {self.depth * 1e3:g} mm", where="cycle, back_mm",
                 accepted="less than depth_mm",
             )  # fmt: skip
+
+    @property
+    def said(self) -> str:
+        """What it is, in words."""
+        parts = []
+        if self.kind == "chip_break" and self.depth is not None:
+            parts.append(f"chips broken each {self.depth * 1e3:g} mm by drawing back {self.back * 1e3:g} mm")
+        if self.dwell:
+            parts.append(f"a dwell of {self.dwell:g} s at the target")
+        return ", ".join(parts) or "in one go"
 
     def breaks(self, depth: float) -> Array:
         """Stand-offs at which chips are broken in a stroke, falling [m], shape (n,).

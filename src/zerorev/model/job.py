@@ -60,7 +60,7 @@ class Job:
     notes: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        """Check that there are holes and that their ids differ, and name the controller."""
+        """Check the holes, that their ids differ, and name the controller."""
         known = controller_of(self.robot.manufacturer)
         if self.settings.controller is None and known is not None:
             object.__setattr__(self, "settings", replace(self.settings, controller=known.name))
@@ -75,4 +75,5 @@ class Job:
             if hole.id in seen:
                 raise InputError(f"the id '{hole.id}' is used twice", where="holes", accepted="ids that differ")
             seen.add(hole.id)
+            self.settings.of(hole)  # raises what does not fit together
         check_robot(self.robot, self.settings)

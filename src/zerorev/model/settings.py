@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
 from zerorev.model.controller import Calls, ExternalAxis, check_controller
@@ -13,6 +13,9 @@ from zerorev.model.cycle import Cycle
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
+
+if TYPE_CHECKING:
+    from zerorev.model.hole import Hole
 
 __all__ = ["Settings", "Weights"]
 
@@ -156,7 +159,8 @@ class Settings:
                 "joint": "the last of the plunge and the first of the retract as joint moves that are blended",
                 "stop": "an exact stop, with all joints at rest",
             },
-            none="as usual for the controller: blend for krl, joint for the others, stop where blend_mm is 0",
+            none="as usual for the controller: blend for krl, joint for the others; stop where blend_mm is 0 or "
+            "the tool dwells",
             note="In the space of the joints the corner of a motion without reversals is less than a right angle",
             label="corner",
         ),
@@ -428,7 +432,7 @@ class Settings:
         self._check_weights()
         if self.cycle.kind != "single" and self.legs == "free":
             raise InputError("free legs do not break chips", where="cycle", accepted="legs: straight, or kind: single")
-        turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
+        turning_of(self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle.dwell)
 
     def _check_weights(self) -> None:
         weights = dict(self.weights)
@@ -444,6 +448,19 @@ class Settings:
                     where="objective",
                     accepted="joint_stiffness_nm_per_rad beside it, six numbers above 0 [N m/rad]",
                 )
+
+    def of(self, hole: Hole) -> Settings:
+        """The same for one hole, which may have a cycle of its own.
+
+        Raises:
+            InputError: the cycle does not fit to the settings.
+        """
+        if hole.cycle is None:
+            return self
+        try:
+            return replace(self, cycle=hole.cycle)
+        except InputError as wrong:
+            raise InputError(wrong.what, where=f"hole {hole.id}, {wrong.where}", accepted=wrong.accepted) from None
 
     @property
     def without_proof(self) -> Settings:
@@ -462,7 +479,7 @@ class Settings:
     @property
     def turning(self) -> Turning:
         """How the motion turns round at the corner, and how much of the depth is lost to it."""
-        return turning_of(self.controller, self.corner, self.blend, self.blend_shortfall)
+        return turning_of(self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle.dwell)
 
     def feed_inwards(self, standoff: float) -> float:
         """Feed of a move towards the target [m/s].

@@ -88,6 +88,7 @@ class WrittenMove:
         pace: how fast it is.
         blend_mm: radius at its end [mm]; 0 is an exact stop, None a blend whose size the program does not have.
         linear: whether the tip goes straight, the tool turning evenly about one axis; else all joints move evenly.
+        wait: for which the robot stands at its end [s].
     """
 
     line: int = field(compare=False)
@@ -95,6 +96,7 @@ class WrittenMove:
     pace: Pace
     blend_mm: Decimal | None
     linear: bool = True
+    wait: Decimal = Decimal(0)
 
     @property
     def stops(self) -> bool:

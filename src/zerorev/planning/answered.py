@@ -70,6 +70,7 @@ def with_another_motion(drilling: Drilling, settings: Settings, answer: HolePlan
         answer: with the best motion of the hole, planned.
         motion: the other one, counted from the hole's own target.
     """
+    settings = settings.of(drilling.hole)
     again = answered(drilling, settings, "planned", motion)
     of_the_motion = motion_findings(drilling, settings, answer)
     optimality = answer.optimality
@@ -82,7 +83,7 @@ def with_another_motion(drilling: Drilling, settings: Settings, answer: HolePlan
 
 
 def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
-    """Time of the hole's own linear moves at their feeds [s], from the approach to the retract.
+    """Time of the hole's own moves at their feeds [s], from the approach to the retract, and of the dwell.
 
     What speeding up and stopping take is left out.
 
@@ -98,7 +99,8 @@ def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
     outwards = float(profile.distance[-1] - profile.distance[profile.corner])
     in_the_air = way.approach.length + way.retract.length
     last = slow / settings.feed_inwards(0.0)
-    return inwards / settings.feed_plunge + last + (outwards + in_the_air) / settings.feed_retract
+    moving = inwards / settings.feed_plunge + last + (outwards + in_the_air) / settings.feed_retract
+    return moving + settings.of(drilling.hole).cycle.dwell
 
 
 def _baseline(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Baseline | None:
@@ -116,6 +118,7 @@ def _critical_rates(drilling: Drilling, profile: Profile, branch: int) -> Array:
 def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> tuple[Finding, ...]:
     """What a user should know of a motion that can be run."""
     robot, score, hole = drilling.robot, answer.score, answer.hole
+    settings = settings.of(hole)
     assert score is not None
     assert answer.verified is not None
     found = []

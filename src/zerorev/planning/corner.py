@@ -31,7 +31,8 @@ def corner_of(drilling: Drilling, settings: Settings, motion: Motion) -> Corner:
         settings: controller, corner and blend.
         motion: of the hole.
     """
-    turning, profile = settings.turning, motion.profile
+    settings, profile = settings.of(drilling.hole), motion.profile
+    turning = settings.turning
     around = np.abs(np.diff(profile.standoff))[[profile.corner - 1, profile.corner]]
     reach = off_axis = tilt = 0.0
     kind, radius, law = turning.kind, min(turning.radius, settings.blend_share * around.min()), turning.law
@@ -70,6 +71,7 @@ def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]
         settings: that ask for it.
         answer: with its corner.
     """
+    settings = settings.of(answer.hole)
     corner, asked = answer.corner, settings.turning
     if corner is None or corner.kind == asked.kind:
         if corner is not None and max(corner.off_axis / settings.corner_tolerance, corner.tilt / MOST_TILT) > 1:
@@ -80,7 +82,9 @@ def corner_findings(settings: Settings, answer: HolePlan) -> tuple[Finding, ...]
             )
             return (Finding("warning", "corner", message, answer.hole.id),)
         if corner is not None and corner.kind == "stop":
-            message = "the program stops at the target, with all joints at rest: each has to break loose there again"
+            stands = f"stands at the target for {settings.cycle.dwell:g} s" if settings.cycle.dwell else ""
+            what = f"the tool {stands}" if stands else "the program stops at the target"
+            message = f"{what}, with all joints at rest: each has to break loose there again"
             return (Finding("warning", "corner", message, answer.hole.id),)
         return ()
     message = (

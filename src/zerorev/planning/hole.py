@@ -54,7 +54,7 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         the motion with its score, the baseline with constant spin, the outcome of the check, and findings. A hole that
         cannot be drilled is an answer, too: its status is `infeasible`.
     """
-    settings = settings or Settings()
+    settings = (settings or Settings()).of(hole)
     drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"plan with {settings.legs} legs")
     check_robot(robot, settings)
@@ -89,7 +89,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
         status is `infeasible` and the hole is as it was.
     """
-    settings = settings or Settings()
+    settings = (settings or Settings()).of(hole)
     drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"deepest stroke with {settings.legs} legs")
     check_robot(robot, settings)

@@ -183,6 +183,7 @@ def check_hole(
         stated: what is claimed.
         chosen: whether the motion may have been chosen for the sequence of the holes, at the cost of some travel.
     """
+    settings = settings.of(stated.hole)
     deepest = strokes == "deepest" and stated.hole.profile is None
     again = (
         plan_deepest(robot, tool, _with_its_motion(stated), settings)

@@ -205,7 +205,7 @@ def _stop(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> Sto
 
 def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: HolePlan) -> Offer:
     """What one hole offers."""
-    motion, score = answer.motion, answer.score
+    motion, score, settings = answer.motion, answer.score, settings.of(answer.hole)
     if motion is None or score is None:
         return ()
     drilling = Drilling(robot, tool, answer.hole, settings.limit_margin)
@@ -217,7 +217,7 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     best = order.judged(motion.profile, motion.branch, Evaluation(motion, score, ()))
     assert best is not None
     found = [planned]
-    in_one_go = answer.hole.drilled_by(settings.cycle).kind == "single"
+    in_one_go = settings.cycle.kind == "single"
     for one in members(drilling, settings, best) if in_one_go else (best,):
         if one is best or _affordable(order, one, best):
             found += _turned(drilling, settings, one, planned)

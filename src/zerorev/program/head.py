@@ -90,6 +90,8 @@ def about(hole: HoleProgram, joint_names: Sequence[str], comments: Comments) -> 
     psi = " ".join(fixed(np.rad2deg(p)) for _, p in places)
     reversals = " ".join(f"{count:d}" for count in hole.reversals_per_joint)
     stroke = f"stroke {fixed(hole.depth * 1e3, 3)} mm, lead-in {fixed(hole.lead_in * 1e3, 3)} mm"
+    if hole.corner_move.wait > 0:
+        stroke += f", stands at the target for {hole.corner_move.wait:.2f} s"
     return [
         *comments.lines(f"{stroke}, reversals of {joint_names[0]} to {joint_names[-1]}: {reversals}"),
         *comments.lines(f"stand-off [mm] {standoff}"),

@@ -62,6 +62,7 @@ class Move:
         leg: which part of the motion it belongs to.
         comment: what its end is.
         linear: whether the tip goes straight.
+        wait: for which the tool stands at its end [s].
     """
 
     end: Point
@@ -71,6 +72,7 @@ class Move:
     leg: Leg
     comment: str
     linear: bool = True
+    wait: float = 0.0
 
     @property
     def standoff(self) -> float:
@@ -243,7 +245,7 @@ def _between(plan: Plan, stops: Sequence[Stop]) -> tuple[list[Array], Array]:
 
 
 def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HoleProgram:
-    motion, settings = hole.motion, plan.settings
+    motion, settings = hole.motion, plan.settings.of(hole.hole)
     assert motion is not None
     lead_in, approach, retract = stop.way.lead_in, stop.way.approach, stop.way.retract
     reach = hole.corner.reach if hole.corner else 0.0
@@ -272,6 +274,7 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
             point.leg,
             point.comment,
             point.linear,
+            settings.cycle.dwell if point is points[corner] else 0.0,
         )
         for (before, point), end in zip(pairwise(points), ends[1:], strict=True)
     )

@@ -89,7 +89,7 @@ def _blend(program: Program) -> tuple[Finding, ...]:
     clipped = [
         f"the blend at the corner is {depth.blend * 1e3:.2f} mm instead of {wanted * 1e3:g} mm: half the shorter of "
         "the two moves that meet there"
-        if depth.blend < wanted - NOTICEABLE and program.settings.turning.kind == "blend"
+        if 0 < depth.blend < wanted - NOTICEABLE and program.settings.turning.kind == "blend"
         else ""
         for depth in depths
     ]
@@ -129,7 +129,7 @@ def _clearance(program: Program) -> tuple[Finding, ...]:
     if program.settings.deepen_corner and program.settings.turning.shortfall > 0:
         at_target = [
             "deepen_corner is asked for, but the plan's corner lies at the target: plan the hole again"
-            if depth.below <= NOTICEABLE
+            if depth.below <= NOTICEABLE and depth.blend > 0
             else ""
             for depth in depths
         ]

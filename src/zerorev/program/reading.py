@@ -2,14 +2,15 @@
 
 A language says which forms its statements have and what each does; here is what none may say otherwise: a hole begins
 with a joint move to a stop and ends with a stop, moves to a stop before it are the way to it, nothing that may stop the
-robot stands between blended moves, and a message names file, line and what would be accepted.
+robot stands between blended moves, the tool waits only after a move of a hole that stops, and a message names file,
+line and what would be accepted.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import Any, ClassVar, NoReturn, TypeAlias
 
@@ -108,6 +109,23 @@ class Reading(ABC):
         """A move of the hole that is being read, as `WrittenMove` has it."""
         assert self.hole is not None
         self.hole.moves.append(WrittenMove(self.line, end, pace, blend_mm, linear))
+
+    def wait(self, what: str, seconds: Decimal) -> None:
+        """The tool stands where the last move of the hole that is being read has ended in a stop.
+
+        Args:
+            what: the statement, for a message.
+            seconds: how long.
+        """
+        self.stand_still(what)
+        if not seconds > 0:
+            self.refuse(f"{what} of {seconds} s", accepted="a time above 0")
+        if self.hole is None or not self.hole.moves:
+            self.refuse(f"{what} before the first move of a hole")
+        last = self.hole.moves[-1]
+        if last.wait > 0:
+            self.refuse(f"a second {what} at the same place")
+        self.hole.moves[-1] = replace(last, wait=seconds)
 
     def close(self) -> None:
         """End the hole that is being read."""

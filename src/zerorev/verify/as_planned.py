@@ -25,6 +25,7 @@ __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
 PLACE = 1e-5  # [m]: on which side of a place a move lies
 FEED = 1e-6  # [m/s]: six decimals
+WAIT = 1e-9  # [s]: a dwell is in hundredths, which every language prints
 TIP = {"m/s": 1.0, "cm/min": 1e-2 / 60}  # [m/s]: units in which the speed of the tip is given
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
 NUMBERED = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
@@ -108,7 +109,7 @@ def moves_as_planned(
         written: the moves.
         at: their points.
     """
-    profile, settings = motion.profile, plan.settings
+    profile, settings = motion.profile, plan.settings.of(hole_plan.hole)
     names = ["the first point", *(f"line {move.line}" for move in written.moves)]
     steps = np.diff(at.standoff)
     ends = [written.start, *(move.end for move in written.moves)]
@@ -154,6 +155,7 @@ def moves_as_planned(
     stops = hole_plan.corner is not None and hole_plan.corner.kind == "stop"
     yield from _blends_differ(plan, written, at, steps, 0.0 if stops else settings.turning.radius)
     yield from _paces_differ(plan, written, at, steps)
+    yield from _waits_differ(written, at, settings.cycle.dwell)
 
 
 def _along(profile: Profile, distance: Array, standoff: Array) -> Array:
@@ -208,6 +210,14 @@ def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) ->
             slack = FEED + (found * open_ + apart) / time
         if abs(found - feed) > slack:
             yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+
+
+def _waits_differ(written: WrittenHole, at: Places, dwell: float) -> Iterator[str]:
+    """The tool must stand at the corner as long as asked for [s], and nowhere else."""
+    for k, move in enumerate(written.moves, start=1):
+        asked = dwell if k == at.corner else 0.0
+        if abs(float(move.wait) - asked) > WAIT:
+            yield f"line {move.line}: the tool stands at its end for {move.wait:f} s, the plan says {asked:g} s"
 
 
 def _time_by_share(

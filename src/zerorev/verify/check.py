@@ -78,6 +78,7 @@ def verify_hole(
         return Verification(False, 0, 0, (0,) * 6, np.nan, np.nan, np.nan, np.nan, flaws)
 
     hole, start = hole_plan.hole, motion.joints[0]
+    settings = settings.of(hole)
     posture = posture_of(robot.arm, start)
     asked = legs(motion.profile, samples)
     track = Track(asked, follow(robot, tool, hole, asked, posture, start), robot.nil_rate)
@@ -153,7 +154,7 @@ def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -
         settings: as planned.
         hole_plan: the hole, its motion and what is claimed of that.
     """
-    own = hole_plan
+    own, settings = hole_plan, settings.of(hole_plan.hole)
     return fingerprint(robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset, own.corner)
 
 

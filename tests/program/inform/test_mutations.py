@@ -8,6 +8,7 @@ import pytest
 from oracles.inform_reader import read
 from oracles.judged import Judge
 from oracles.token_edits import Language, edits
+from zerorev.model.cycle import Cycle
 from zerorev.program.inform.dialect import INFORM
 
 
@@ -61,6 +62,11 @@ def hold(plan, count, seed):
 def test_a_sample_of_edits(plan):
     found = hold(plan, 100, seed=1)
     assert len({kind for kind, _ in found}) > 8
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
+def test_edits_where_the_tool_stands(count, plan_for):
+    hold(plan_for("ma2010", 1, cycle=Cycle(dwell=0.12)), count, seed=4)
 
 
 @pytest.mark.long

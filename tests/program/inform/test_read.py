@@ -53,7 +53,7 @@ EDITS = {
     "more than all": ("VJ=20.00", "VJ=100.01", 21, "100 at most"),
     "a move twice": ("MOVL C00002", "MOVL C00001", 24, "C00002"),
     "a position unused": ("MOVJ C00005 VJ=20.00 PL=0\n", "", 27, "each position"),
-    "a wait in a hole": ("MOVJ C00003", "TIMER T=1.00\nMOVJ C00003", 25, "MOVJ C00000"),
+    "a wait in a hole": ("MOVJ C00003", "TIMER T=1.00\nMOVJ C00003", 25, ""),
     "an output in a hole": ("MOVJ C00003", "DOUT OT#(1) ON\nMOVJ C00003", 25, "MOVJ C00000"),
     "a call in a hole": ("MOVJ C00003", "CALL JOB:A\nMOVJ C00003", 25, ""),
     "a comment in a hole": ("MOVJ C00003", "' here\nMOVJ C00003", 25, ""),

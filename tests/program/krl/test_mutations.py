@@ -12,6 +12,7 @@ from oracles.krl_reader import commands
 from oracles.places import DATA
 from zerorev import cli
 from zerorev.cli import main
+from zerorev.model.cycle import Cycle
 from zerorev.program.as_exported import expected
 from zerorev.program.export import export
 from zerorev.program.krl.dialect import KRL
@@ -53,6 +54,12 @@ def hold(plan, count, seed):
 def test_a_sample_of_mutations(plan):
     found = hold(plan, 80, seed=1)
     assert len({kind for kind, _ in found}) > 20
+
+
+def test_a_sample_of_mutations_where_the_tool_stands(published, plan_of):
+    plan = plan_of(published(1), name="standing", cycle=Cycle(dwell=0.12))
+    assert "WAIT SEC 0.12" in export(plan).text
+    hold(plan, 120, seed=24)
 
 
 @pytest.mark.long

@@ -184,7 +184,8 @@ LIN = "LIN {X 500.0000,Y 300.0000,Z 800.0000,A 0.0000,B 0.0000,C 5.9388}"
 @pytest.mark.parametrize(
     ("old", "new", "what"),
     [
-        ("$VEL.CP=", "WAIT SEC 1\n$VEL.CP=", "'WAIT SEC 1' is not a statement that zerorev writes"),
+        ("$VEL.CP=", "WAIT SEC 1\n$VEL.CP=", "WAIT SEC before the first move of a hole"),
+        (LIN, f"WAIT SEC 1\n{LIN}", "WAIT SEC between blended moves"),
         ("$VEL.CP=", "$OUT[1]=TRUE\n$VEL.CP=", "is neither a name nor a number"),
         ("$VEL.CP=", "$OV_PRO=50\n$VEL.CP=", r"'\$OV_PRO=50' is not a statement that zerorev writes"),
         ("$VEL.CP=", "$VEL.CP=-", "a number above 0"),

@@ -10,6 +10,7 @@ from oracles.judged import Judge
 from oracles.makers import panel_plan, stand_in
 from oracles.rapid_reader import commands
 from oracles.token_edits import Language, edits
+from zerorev.model.cycle import Cycle
 from zerorev.program.rapid.dialect import RAPID
 
 LANGUAGE = Language(
@@ -82,6 +83,11 @@ def inside_a_point(text, edited):
 def test_a_sample_of_edits(plan):
     found = hold(plan, 120, seed=1)
     assert len({kind for kind, _ in found}) > 8
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
+def test_edits_where_the_tool_stands(count):
+    hold(panel_plan(stand_in("ABB"), 1, min_rate=zr.Settings().min_rate, cycle=Cycle(dwell=0.12)), count, seed=4)
 
 
 @pytest.mark.long

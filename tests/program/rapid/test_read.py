@@ -30,7 +30,7 @@ def test_golden_programs(path):
 MOVE = "MoveL [[450.0000,300.0000,800.0000]"
 LAST = "position_1_tool\\WObj:=position_1_part;\n  ConfL"
 FAULTS = [
-    ("  ConfL\\Off;", "  WaitTime 1;", "'WaitTime 1;' is not a statement that zerorev writes"),
+    ("  ConfL\\Off;", "  WaitTime 1;", "WaitTime before the first move of a hole"),
     (MOVE, "SetDO do1,1;\n" + MOVE, "'SetDO do1,1;' is not a statement"),
     (MOVE, "Stop;\n" + MOVE, "'Stop;' is not a statement"),
     ("  ! plunge: target\n", "  my_own 1;\n", "'my_own 1;' is called between blended moves"),

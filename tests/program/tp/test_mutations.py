@@ -9,6 +9,7 @@ import pytest
 from oracles.judged import Judge
 from oracles.makers import position_plan
 from oracles.token_edits import Language, edits
+from zerorev.model.cycle import Cycle
 from zerorev.program.tp.dialect import TP
 
 
@@ -61,6 +62,11 @@ def hold(judge, count, seed):
 def test_a_sample_of_edits(judge):
     found = hold(judge, 120, seed=1)
     assert sum(count for (_, name, _), count in found.items() if name is None) > 60
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
+def test_edits_where_the_tool_stands(count, fanuc, for_tp):
+    hold(Judge.of(position_plan(fanuc, 2, cycle=Cycle(dwell=0.12), **for_tp), TP), count, seed=4)
 
 
 @pytest.mark.long

@@ -8,6 +8,7 @@ import pytest
 from oracles.judged import Judge
 from oracles.token_edits import Language, edits
 from oracles.urscript_reader import ScriptError, commands
+from zerorev.model.cycle import Cycle
 from zerorev.program.urscript.dialect import URSCRIPT
 
 LANGUAGE = Language(
@@ -85,3 +86,8 @@ def test_five_hundred_edits(plan):
     found = hold(plan, 500, seed=2)
     assert sum(count for (_, name), count in found.items() if name is None) > 300
     assert {name for _, name in found} == {None, "last printed digit", "zeros of a number", "white space or comment"}
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
+def test_edits_where_the_tool_stands(count, plan_called):
+    hold(plan_called("position 2", cycle=Cycle(dwell=0.12)), count, seed=4)

@@ -22,10 +22,13 @@ NAME = r"[A-Z0-9_-]{1,32}"
 CALLED = r"[A-Za-z0-9_-]{1,32}"
 WHOLE = r"-?(?:0|[1-9]\d{0,8})"
 MOVE = re.compile(r"(MOVJ|MOVL) C(\d{5}) (VJ|V)=(\d{1,4}\.\d{1,2}) PL=([0-8])", re.ASCII)
+TIMER = re.compile(r"TIMER T=(\d{1,3}\.\d{2})", re.ASCII)
 CALL = re.compile(rf"CALL JOB:({CALLED})")
 FASTEST_SHARE = 100
 AXES = "SLURBT"
-INSTRUCTIONS = "MOVJ C00000 VJ=0.00 PL=0 or MOVL C00000 V=0.0 PL=0 (PL 0 to 8), CALL JOB:NAME, a comment or END"
+INSTRUCTIONS = (
+    "MOVJ C00000 VJ=0.00 PL=0 or MOVL C00000 V=0.0 PL=0 (PL 0 to 8), TIMER T=0.00, CALL JOB:NAME, a comment or END"
+)
 
 
 def read_job(text: str, file: str = "job") -> WrittenProgram:
@@ -121,6 +124,10 @@ class _Reading(Reading):
             self.stand_still("a comment")
         elif (move := MOVE.fullmatch(source)) is not None:
             self.moved(move)
+        elif (timer := TIMER.fullmatch(source)) is not None:
+            seconds = Decimal(timer[1])
+            self.wait("TIMER", seconds)
+            self.note(("TIMER", "T=", seconds), source)
         elif (call := CALL.fullmatch(source)) is not None:
             self.stand_still(f"CALL JOB:{call[1]}")
             self.note(("CALL", "JOB:", call[1]), source)

@@ -29,6 +29,7 @@ from zerorev.program.inform.text import (
     share_needed,
     share_written,
 )
+from zerorev.program.letters import fixed
 from zerorev.program.neutral import HoleProgram, Program, split
 from zerorev.program.notes import notes
 from zerorev.program.refusals import refuse_other_makers
@@ -148,6 +149,8 @@ class _Job:
                 kind, pace = "MOVJ", f"VJ={share_written(share_needed(robot, begin, move))}"
             self.move(kind, move.end.joints, pace, BLENDED if move.blend > 0 else STOPS, margin)
             begin = move.end.joints
+            if move.wait > 0:
+                self.body.append(f"TIMER T={fixed(move.wait, 2)}")
         self.call(calls.after_hole)
 
     def away(self, program: Program) -> None:

@@ -91,9 +91,10 @@ class _Reading(SourceReading):
         self.prepare(words, numbers)
 
     def rest(self, _: Words, numbers: Numbers) -> None:
-        if numbers[0] != 0:
-            self.refuse(f"'WAIT SEC {numbers[0]}' is not a statement that zerorev writes", accepted="WAIT SEC 0.0")
-        self.stand_still("WAIT SEC")
+        if numbers[0] == 0:  # before a call
+            self.stand_still("WAIT SEC")
+        else:
+            self.wait("WAIT SEC", numbers[0])
 
     def set(self, words: Words, numbers: Numbers) -> None:
         name = _name(words)

@@ -130,6 +130,7 @@ def _hole(hole: HoleProgram, title: str, settings: Settings) -> list[str]:
     Never LIN_REL: selected again after a stop within the stroke it runs its whole stroke again from there, into the
     material or the fixture; an absolute LIN only runs what is left. Between the linear moves stand nothing but
     assignments to $VEL and $APO, which do not stop the advance run: an output or a WAIT would make the blend a stop.
+    Where the tool is to stand, the move ends in one, and a WAIT follows.
     """
     lines = [f";FOLD {title}: {krl_label(hole.id)}", *about(hole, KUKA_AXES, KRL_COMMENTS)]
     lines += [_ptp(joints, settings) for joints in (*hole.way, hole.start.joints)]
@@ -144,6 +145,8 @@ def _hole(hole: HoleProgram, title: str, settings: Settings) -> list[str]:
             radius = printed
             lines.append(f"$APO.CDIS={radius}")
         lines.append(_lin(move, A, B))
+        if move.wait > 0:
+            lines.append(f"WAIT SEC {fixed(move.wait, 2)}")
     return [*lines, *called(settings.calls.after_hole), f";ENDFOLD ({title})"]
 
 

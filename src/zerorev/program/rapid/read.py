@@ -172,6 +172,9 @@ class _Reading(SourceReading):
             self.refuse(f"the zone {zone} is not declared", accepted=" or ".join(["fine", *self.zones]))
         self.move(end, pace, self.zones.get(zone, Decimal(0)), linear=linear)
 
+    def stand(self, _: Words, numbers: Numbers) -> None:
+        self.wait("WaitTime", numbers[0])
+
     def speed(self, name: Word) -> Decimal:
         """Of the tip [mm/s]."""
         if name not in self.speeds:
@@ -227,6 +230,7 @@ SOURCES: dict[str, Callable[[_Reading, Words, Numbers], None]] = {
     f"MoveAbsJ {JOINTS},NAME\\T:=0,fine,{FRAMES}": _Reading.evenly,
     f"MoveL {TARGET},NAME,NAME,{FRAMES}": _Reading.straight,
     f"MoveL {TARGET},NAME,fine,{FRAMES}": _Reading.straight,
+    "WaitTime 0;": _Reading.stand,
     "ConfL\\On;": _Reading.afterwards,
     "ENDPROC": _Reading.end_procedure,
     "ENDMODULE": _Reading.finish,

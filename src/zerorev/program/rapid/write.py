@@ -145,7 +145,7 @@ def _zone_turns(program: Program) -> dict[str, float]:
 def _hole(program: Program, hole: HoleProgram, name: str, title: str) -> list[str]:
     """Joint moves to the start, and from there on nothing but moves until the end of the stroke.
 
-    An output or a wait between them would make a zone a stop.
+    An output or a wait between them would make a zone a stop; where the tool is to stand, the move ends in one.
     """
     settings = program.settings
     lines = [
@@ -159,6 +159,8 @@ def _hole(program: Program, hole: HoleProgram, name: str, title: str) -> list[st
     for move in hole.moves:
         lines += [f"! {move.leg}: {move.comment}", _move(program, move, name, turned)]
         turned = quaternion((move.end.T_part_tcp @ Z_ALONG_PLUNGE)[:3, :3], turned)
+        if move.wait > 0:
+            lines.append(f"WaitTime {fixed(move.wait, 2)};")
     return [*lines, *called(settings.calls.after_hole)]
 
 

@@ -23,11 +23,12 @@ MILLI = Decimal("0.001")
 
 _FRAME = re.compile(r"(UFRAME_NUM|UTOOL_NUM) ?= ?([0-9]{1,2})")
 _MOTION = re.compile(r"([JL]) P\[([0-9]{1,7})\] ([0-9]{1,5})(%|msec|mm/sec|cm/min) (FINE|CNT100)")
+_WAIT = re.compile(r"WAIT ([0-9]{0,2}\.[0-9]{2}) ?\(sec\)")
 _ARGUMENT = r"[0-9]{1,9}(?:\.[0-9]{1,9})?|'[^';]{0,34}'"
 _CALL = re.compile(rf"CALL ([A-Z][A-Z0-9_]{{0,35}})(?: ?\( ?((?:{_ARGUMENT})(?: ?, ?(?:{_ARGUMENT}))*) ?\))?")
 FORMS = (
     "UFRAME_NUM=n, UTOOL_NUM=n, CALL NAME, J P[n] n% FINE, J P[n] n msec, L P[n] n mm/sec or n cm/min, with FINE or "
-    "CNT100, or a comment"
+    "CNT100, WAIT n.nn(sec), or a comment"
 )
 
 
@@ -89,6 +90,9 @@ class _Reading(Reading):
             words = self.select(frame[1], int(frame[2]))
         elif motion := _MOTION.fullmatch(statement):
             words = self.motion(*motion.groups())
+        elif wait := _WAIT.fullmatch(statement):
+            self.wait("WAIT", Decimal(wait[1]))
+            words = ("WAIT", Decimal(wait[1]), "(sec)")
         elif call := _CALL.fullmatch(statement):
             words = self.call(*call.groups())
         else:

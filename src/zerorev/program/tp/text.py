@@ -8,12 +8,12 @@ import numpy as np
 
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
-from zerorev.program.letters import Comments, settled
+from zerorev.program.letters import Comments, fixed, settled
 from zerorev.verify.arm import branch_of
 
 __all__ = [
     "CM_MIN", "COMMENT_WIDTH", "DECIMALS", "LONGEST_TEXT", "TP_COMMENTS", "Speed", "configuration", "joint_time",
-    "tip_speed",
+    "standing", "tip_speed",
 ]  # fmt: skip
 
 COMMENT_WIDTH = 32  # characters behind the sign
@@ -57,6 +57,11 @@ def tip_speed(feed: float) -> Speed:
 def joint_time(time: float) -> Speed:
     """The speed of a move of all joints, by the time that it takes [s]."""
     return Speed(int(settled(time * 1e3, 0)), "msec")
+
+
+def standing(time: float) -> str:
+    """For how long the robot stands [s]: two decimals, and none but these of less than a second."""
+    return fixed(time, 2).removeprefix("0").rjust(6)
 
 
 def configuration(robot: Robot, joints: Array) -> str:

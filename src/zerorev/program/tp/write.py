@@ -20,7 +20,7 @@ from zerorev.program.tp.examine import errors
 from zerorev.program.tp.head import sentences
 from zerorev.program.tp.listing import Frames, Listing
 from zerorev.program.tp.names import TP_NAMES, called
-from zerorev.program.tp.text import TP_COMMENTS, Speed, joint_time, tip_speed
+from zerorev.program.tp.text import TP_COMMENTS, Speed, joint_time, standing, tip_speed
 
 __all__ = ["most_holes", "too_large", "tp_programs"]
 
@@ -144,6 +144,8 @@ def _move(listing: Listing, move: Move) -> None:
     else:
         position = listing.frames.joints(move.end.joints)
         listing.move("J", position, joint_time(move.time), stops=move.blend == 0)
+    if move.wait > 0:
+        listing.say(f"WAIT {standing(move.wait)}(sec) ")
 
 
 def _call(listing: Listing, calls: tuple[Call, ...]) -> None:

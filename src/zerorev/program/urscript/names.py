@@ -17,7 +17,7 @@ end_teach_mode force_mode force_mode_set_damping force_mode_set_gain_scaling fre
 get_freedrive_status get_target_tcp_pose_along_path get_target_tcp_speed_along_path movec movej movel movep
 path_offset_disable path_offset_enable path_offset_get path_offset_set path_offset_set_alpha_filter
 path_offset_set_max_offset pause_on_error_code position_deviation_warning reset_revolution_counter screw_driving
-servoc servoj servol set_conveyor_tick_count set_pos speedj speedl stop_conveyor_tracking stopj stopl teach_mode
+servoc servoj servol set_conveyor_tick_count set_pos sleep speedj speedl stop_conveyor_tracking stopj stopl teach_mode
 track_conveyor_circular track_conveyor_linear
 """
 _SETTINGS = """
@@ -31,11 +31,12 @@ get_inverse_kin_has_solution get_joint_temp get_joint_torques get_list_length ge
 get_target_joint_speeds get_target_payload_cog get_target_payload_inertia get_target_payload_mass get_target_tcp_pose
 get_target_tcp_speed get_target_waypoint get_tcp_force get_tcp_offset get_tool_accelerometer_reading get_tool_current
 integer_to_binary_list interpolate_pose inv is_steady is_within_safety_limits length log norm normalize point_dist
-pose_add pose_dist pose_inv pose_sub pose_trans pow powerdown r2d random rotvec2rpy rpy2rotvec sin size sleep sqrt
+pose_add pose_dist pose_inv pose_sub pose_trans pow powerdown r2d random rotvec2rpy rpy2rotvec sin size sqrt
 str_at str_cat str_empty str_find str_len str_sub tan textmsg to_num to_str transpose wrench_trans
 """
 KEPT = frozenset(f"{_LANGUAGE} {_MOTION} {_SETTINGS}".split())
-"""Words of the language, and functions that move the robot or change how it moves: what no call may be called."""
+"""Words of the language, and functions that move the robot, let it stand or change how it moves: what no call may be
+called."""
 
 URSCRIPT_NAMES = Names(32, frozenset(name.upper() for name in KEPT | frozenset(_VALUES.split())) | WINDOWS)
 """No greatest length is documented; these stay readable on the pendant."""

@@ -115,6 +115,9 @@ class _Reading(SourceReading):
             self.above_zero("r", each)
         self.move(end, pace, _mm(radius[0]) if radius else STOP, linear=linear)
 
+    def stand(self, _: Words, numbers: Numbers) -> None:
+        self.wait("sleep", numbers[0])
+
     def finish(self, *_: object) -> None:
         self.close_last()
         self.ended = True
@@ -144,6 +147,7 @@ SOURCES: dict[str, Callable[[_Reading, Words, Numbers], None]] = {
     f"movel(pose_trans(part, p[{SIX}]), a=0, v=0, r=0)": _Reading.straight,
     f"movej([{SIX}], t=0)": _Reading.jointly,
     f"movej([{SIX}], t=0, r=0)": _Reading.jointly,
+    "sleep(0)": _Reading.stand,
     "end": _Reading.finish,
 }
 """Every form of a statement between def and end, and what it does; `0` stands for any number."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from importlib.metadata import version as installed_version
 
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.program.dialect import Z_ALONG_PLUNGE
 from zerorev.program.head import about, head, part_head
-from zerorev.program.letters import settled
+from zerorev.program.letters import fixed, settled
 from zerorev.program.names import label
 from zerorev.program.neutral import HoleProgram, Move, Program, split
 from zerorev.program.refusals import refuse_other_makers
@@ -77,7 +78,7 @@ def _hole(program: Program, hole: HoleProgram) -> list[str]:
         *about(hole, AXES, URSCRIPT_COMMENTS),
         *(_go(program.robot.shown(joints)) for joints in (*hole.way, hole.start.joints)),
         *called(program.settings.calls.before_hole),
-        *(_move(move, program.robot.shown(move.end.joints)) for move in hole.moves),
+        *(line for move in hole.moves for line in _move(move, program.robot.shown(move.end.joints))),
         *called(program.settings.calls.after_hole),
     ]
 
@@ -86,10 +87,13 @@ def _go(joints: Array) -> str:
     return f"movej({joint_list(joints)}, a={JOINT_ACCELERATION}, v={JOINT_SPEED})"
 
 
-def _move(move: Move, joints: Array) -> str:
+def _move(move: Move, joints: Array) -> Iterator[str]:
     """One move of a hole; a time in place of a speed holds the feed of the tip where all joints move."""
     blend = f", r={settled(move.blend, FEW_DECIMALS)}" if move.blend > 0 else ""
     if move.linear:
         end = f"pose_trans({PART}, {pose(move.end.T_part_tcp @ Z_ALONG_PLUNGE)})"
-        return f"movel({end}, a={ACCELERATION}, v={settled(move.feed, FEW_DECIMALS)}{blend}) # {move.comment}"
-    return f"movej({joint_list(joints)}, t={settled(move.time, FEW_DECIMALS)}{blend}) # {move.comment}"
+        yield f"movel({end}, a={ACCELERATION}, v={settled(move.feed, FEW_DECIMALS)}{blend}) # {move.comment}"
+    else:
+        yield f"movej({joint_list(joints)}, t={settled(move.time, FEW_DECIMALS)}{blend}) # {move.comment}"
+    if move.wait > 0:
+        yield f"sleep({fixed(move.wait, 2)})"

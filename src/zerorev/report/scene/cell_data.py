@@ -140,6 +140,7 @@ def track_data(
         return None
     x = signed_distance(profile, path.distance)
     seconds = np.minimum(path.distance, corner) / settings.feed_plunge + np.maximum(x, 0.0) / settings.feed_retract
+    seconds += settings.of(drilling.hole).cycle.dwell * (x > 0)
     known = np.flatnonzero(reached)
     nearest = known[np.abs(np.arange(reached.size)[:, None] - known).argmin(axis=1)]
     return {

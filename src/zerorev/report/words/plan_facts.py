@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.files.moved_job import frame_text
 from zerorev.files.units import deg, mm
+from zerorev.model.cycle import Cycle
 from zerorev.model.finding import Finding, Level
 from zerorev.model.plan import HolePlan, Plan, Transition, named_holes
 from zerorev.report.words.answer import how_deep, minutes
@@ -175,8 +176,17 @@ def job_facts(plan: Plan) -> list[Fact]:
         Fact("part frame", f"({_listed(frame['xyz_mm'])}) mm, roll pitch yaw ({_listed(frame['rpy_deg'])}) deg"),
         Fact("feed", f"{settings.feed_plunge * 1e3:g} mm/s plunge, {settings.feed_retract * 1e3:g} mm/s retract"),
         *([Fact("spindle", f"{settings.spindle_rpm:g} rpm")] if settings.spindle_rpm else []),
+        *([Fact("cycle", cycles)] if (cycles := _cycles(plan)) else []),
         Fact("motions", how_deep(settings)),
     ]
+
+
+def _cycles(plan: Plan) -> str:
+    """How the holes are drilled, and how many so where they differ; empty where all are drilled in one go."""
+    counts = Counter(plan.settings.of(hole.hole).cycle.said for hole in plan.holes)
+    if list(counts) == [Cycle().said]:
+        return ""
+    return "; ".join(f"{words} ({count:,})" if len(counts) > 1 else words for words, count in counts.items())
 
 
 def robot_facts(plan: Plan) -> list[Fact]:

@@ -57,7 +57,7 @@ def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
         settings: blend, corner and bounds as planned.
         hole_plan: what is claimed.
     """
-    wrong = tuple(complete(hole_plan))
+    wrong, settings = tuple(complete(hole_plan)), settings.of(hole_plan.hole)
     motion, score = hole_plan.motion, hole_plan.score
     if wrong or motion is None or score is None:
         return nothing("refuted", wrong)

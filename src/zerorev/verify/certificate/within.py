@@ -185,6 +185,7 @@ class _Placements:
         assert posture is not None
         self._robot, self._setting, self._T_base_part = robot, Setting(robot.arm, posture), T_base_part
         self._joints = motion.joints[[0, -1]]
+        settings = settings.of(hole_plan.hole)
         path = planned_motion(
             robot.arm, tool, hole_plan.hole, motion.profile, settings.corner_blend, settings.passing_blend
         )

@@ -34,7 +34,7 @@ class Statement(NamedTuple):
 
 def down_to_the_corner(hole: Hole, settings: Settings) -> Hole:
     """The hole that the legs drill, down to the programmed corner; its depth is that of the legs."""
-    corner = settings.corner_standoff
+    corner = settings.of(hole).corner_standoff
     return replace(hole, target=hole.target - corner * hole.direction, depth=hole.depth - corner, profile=None)
 
 
@@ -48,6 +48,7 @@ def statements(stated: HolePlan, settings: Settings, trees: Sequence[ProofTree])
     """
     if settings.legs == "free":
         return
+    settings = settings.of(stated.hole)
     rules = _Rules(stated, settings)
     at_most = stated.deepest_at_most
     if at_most is not None:
