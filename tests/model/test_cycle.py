@@ -29,7 +29,7 @@ holes:
         ("cycle: {dwell_s: 0.1}\ncorner: blend", "", "kind blend beside a dwell of 0.1 s: where the tool stands, noth"),
         ("cycle: {dwell_s: 0.1}\ncorner: joint\ncontroller: rapid", "", "kind joint beside a dwell of 0.1 s"),
         ("corner: blend", ", cycle: {dwell_s: 0.1}", "hole a, corner: a corner of kind blend beside a dwell of 0.1 s"),
-        ("legs: free", ", cycle: {kind: chip_break, depth_mm: 5}", "hole a, cycle: free legs do not break chips"),
+        ("legs: free", ", cycle: {kind: chip_break, depth_mm: 5}", "hole a, cycle: free legs drill in one go"),
     ],
 )
 def test_what_does_not_fit_together(of_the_job, of_the_hole, what):

@@ -132,7 +132,7 @@ def test_too_many_pecks_are_refused():
 
 
 def test_free_legs_do_not_break_chips():
-    with pytest.raises(InputError, match="free legs do not break chips"):
+    with pytest.raises(InputError, match="free legs drill in one go"):
         Settings(legs="free", cycle=FIVE)
 
 

@@ -92,13 +92,15 @@ def check(
     if not checked.wrong and _passed(stated) <= _passed(checked.plan):
         remember(text)
     if program is not None:
+        from zerorev.model.strokes import by_stroke, together
         from zerorev.program.as_exported import as_exported
         from zerorev.program.notes import calls, only_numbered
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
-            drilled = as_exported(checked.plan, written, dialect, program.stem)
-            proven = certify_program(checked.plan, written, drilled)
+            strokes = by_stroke(checked.plan)
+            drilled = as_exported(strokes, written, dialect, program.stem)
+            proven = together(checked.plan, certify_program(strokes, written, drilled))
             unexamined = (*calls(proven.settings), *only_numbered(written))
             checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *unexamined)))
     elif certify:

@@ -68,12 +68,11 @@ def export(
 
     from zerorev.program.dialects import dialect_for, program_file
     from zerorev.program.export import export as to_program
-    from zerorev.program.export import retract_name, retract_program
+    from zerorev.program.export import program_of, retract_name, retract_program
     from zerorev.program.plan_mark import check_replaceable, plan_mark
-    from zerorev.program.selection import selection
 
     ids = _ids(answer, only)
-    called = selection(answer, start, ids).name if retract is None else retract_name(answer, retract)
+    called = program_of(answer, start, ids) if retract is None else retract_name(answer, retract)
     if output is None:
         file, mark = program_file(called, dialect_for(answer, controller).name), plan_mark(answer.name, plan.name)
         check_replaceable(plan.parent, [file], mark, INSTEAD)

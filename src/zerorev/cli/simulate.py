@@ -82,9 +82,10 @@ def simulate(
     from zerorev.files.cell_file import read_cell
     from zerorev.files.io import read_plan
     from zerorev.model.ranges import Cell
+    from zerorev.model.strokes import by_stroke
     from zerorev.report.words import study as shown
 
-    stated = read_plan(plan)
+    stated = by_stroke(read_plan(plan))
     thrust = stated.settings.thrust if thrust_n is None else thrust_n
     known_arm = Cell() if cell is None else read_cell(cell)
     check_robot(known_arm, stated.robot.name, str(cell))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -49,6 +50,7 @@ from zerorev.model.plan import (
     Optimality,
     Plan,
     Score,
+    Stroke,
     Transition,
     Verification,
     Within,
@@ -58,6 +60,7 @@ from zerorev.model.profile import Profile
 __all__ = ["answer_from", "as_written", "plan_from", "written_motion"]
 
 N = TypeVar("N")
+SHIFTED_MM = 1e-9  # by which stand-offs differ that are counted from two places
 
 
 def plan_from(form: PlanFile | DepthFile) -> Plan:
@@ -197,7 +200,54 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             lost_motion=_lost_motion_from(form.lost_motion),
             corner=_corner_from(form.corner),
             critical_rates=_critical_from(form),
+            **_strokes_from(form, hole, where),
         )
+
+
+def _strokes_from(form: PlanHole, hole: Hole, where: str) -> dict[str, Any]:
+    """The strokes of a hole, where it has several, and the feeds of the first one.
+
+    Raises:
+        InputError: what is said of a stroke differs from what the hole, or the stroke's own answer, says.
+    """
+    if form.strokes is None:
+        return {}
+    strokes = []
+    for n, each in enumerate(form.strokes):
+        at, own = f"strokes[{n}]", each.answer or form
+        if (each.answer is None) != (len(form.strokes) == 1):
+            accepted = "null for the only stroke, and for none of several"
+            raise InputError("is null, or not", where=f"{at}.answer", accepted=accepted)
+        feeds = (float(m(each.feeds_mm_s.plunge)), float(m(each.feeds_mm_s.retract)))
+        if each.answer is not None:
+            agree(f"{at}.answer.id", each.answer.id, f"{form.id}, stroke {n + 1}")
+            answer = replace(_hole_plan_from(each.answer, f"{where}, {at}.answer"), feeds=feeds)
+            _same_axis(f"{at}.answer", answer.hole, hole)
+            strokes.append(noun_from(Stroke, each, answer=answer))
+        else:
+            agree(f"{at}.reversals_in_air", getattr(each, "reversals_in_air"), 0)  # noqa: B009
+            agree(f"{at}.tool", getattr(each, "tool"), 0)  # noqa: B009
+        up = form.depth_mm - own.depth_mm
+        agree(f"{at}.depth_mm", each.depth_mm, own.depth_mm)
+        for k, (here, there) in enumerate(zip(each.standoff_mm, own.standoff_mm or (), strict=False)):
+            agree(f"{at}.standoff_mm[{k}]", here, there + up, SHIFTED_MM)
+        agree(f"{at}.psi_deg", each.psi_deg, own.psi_deg)
+        agree(f"{at}.joints_deg", each.joints_deg.model_dump(), own.joints_deg and own.joints_deg.model_dump())
+        agree(f"{at}.corner", each.corner and each.corner.model_dump(), own.corner and own.corner.model_dump())
+        agree(f"{at}.reversals_in_material", each.reversals_in_material, getattr(own, "reversals"))  # noqa: B009
+        if n == 0:
+            first = {"feeds": feeds}
+    return {**first, "strokes": tuple(strokes)}
+
+
+def _same_axis(where: str, stroke: Hole, hole: Hole) -> None:
+    """Refuse a stroke that does not lie on the axis of its hole, or that is not counted as that is."""
+    for name, there, here in (
+        ("target_mm", mm(stroke.entry), mm(hole.entry)),
+        ("direction", stroke.direction, hole.direction),
+        ("psi_zero", stroke.psi_zero, hole.psi_zero),
+    ):
+        agree(f"{where}.{name}, its distance from the hole's own", float(np.abs(there - here).max()), 0.0, SHIFTED_MM)
 
 
 def _motion_from(form: PlanHole) -> Motion | None:

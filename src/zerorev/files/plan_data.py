@@ -13,8 +13,9 @@ from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
 from zerorev.model.hole import Hole
-from zerorev.model.plan import Corner, HolePlan, LostMotion, Motion, Plan, Score, Strokes
+from zerorev.model.plan import Corner, HolePlan, LostMotion, Motion, Plan, Score, Stroke, Strokes
 from zerorev.model.stated import stated
+from zerorev.model.strokes import shifted
 
 __all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "sequence_data",
            "twist_spread"]  # fmt: skip
@@ -99,6 +100,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "criteria": _data(answer.measures),
         "lost_motion": _lost_motion_data(answer.lost_motion),
         "corner": _corner_data(answer.corner),
+        "strokes": _strokes_data(answer),
         "findings": [data_of(finding) for finding in answer.findings],
     }
 
@@ -113,6 +115,32 @@ def _lost_motion_data(lost: LostMotion | None) -> dict[str, Any] | None:
 
 def _corner_data(corner: Corner | None) -> dict[str, Any] | None:
     return None if corner is None else data_of(corner) | {"interval_mm": mm(np.array(corner.interval))}
+
+
+def _strokes_data(answer: HolePlan) -> list[dict[str, Any]] | None:
+    """The strokes; of a hole with one motion that alone, which is known only where its feeds are."""
+    if answer.strokes:
+        return [
+            data_of(stroke) | _stroke_data(answer.hole, stroke.answer) | {"answer": _hole_data(stroke.answer)}
+            for stroke in answer.strokes
+        ]
+    if answer.motion is None or answer.feeds is None:
+        return None
+    return [data_of(Stroke(answer)) | _stroke_data(answer.hole, answer) | {"answer": None}]
+
+
+def _stroke_data(hole: Hole, own: HolePlan) -> dict[str, Any]:
+    """A stroke of a hole, stand-offs counted from the hole's own target."""
+    assert own.motion is not None
+    assert own.feeds is not None
+    motion = shifted(own.motion, hole.depth - own.hole.depth)
+    return {
+        "depth_mm": mm(own.hole.depth),
+        **{key: value for key, value in _motion_data(motion).items() if key != "branch"},
+        "feeds_mm_s": dict(zip(("plunge", "retract"), mm(own.feeds), strict=True)),
+        "corner": _corner_data(own.corner),
+        "reversals_in_material": 0 if own.score is None else own.score.reversals,
+    }
 
 
 def _critical_data(kappa: Array | None) -> dict[str, Any]:

@@ -59,6 +59,18 @@ def _criterion(criterion: Criterion) -> Field:
     return _SLOWEST if criterion.unit is DEG_PER_MM else Field("figure", DIGITS, criterion.absolute, criterion.added)
 
 
+_CORNER = {
+    "corner": Field("figure", optional=True),
+    "corner.kind": _EXACT,
+    "corner.shortfall_mm": Field("figure", DIGITS, 1e-9),
+    "corner.interval_mm": Field("figure", DIGITS, 1e-9),
+    "corner.law": _EXACT,
+    "corner.reach_mm": Field("figure", DIGITS, 1e-6),  # it is cut where a tolerance is met
+    "corner.off_axis_mm": Field("figure", 1e-4, 1e-8),
+    "corner.tilt_deg": Field("figure", 1e-4, 1e-8),
+}
+
+
 HEAD_FIELDS: dict[str, Field] = {
     "format": Field("input"),
     "name": Field("input"),
@@ -144,15 +156,20 @@ HOLE_FIELDS: dict[str, Field] = {
     "lost_motion.events.leg": _EXACT,
     "lost_motion.events.standoff_mm": Field("figure", DIGITS, 1e-7),
     "lost_motion.events.friction": _EXACT,
-    "corner": Field("figure", optional=True),
-    "corner.kind": _EXACT,
-    "corner.shortfall_mm": Field("figure", DIGITS, 1e-9),
-    "corner.interval_mm": Field("figure", DIGITS, 1e-9),
-    "corner.law": _EXACT,
-    "corner.reach_mm": Field("figure", DIGITS, 1e-6),  # it is cut where a tolerance is met
-    "corner.off_axis_mm": Field("figure", 1e-4, 1e-8),
-    "corner.tilt_deg": Field("figure", 1e-4, 1e-8),
+    **_CORNER,
     "cycle_time_s": Field("figure", DIGITS, 1e-6, optional=True),
+    "strokes": Field("figure", optional=True),
+    "strokes.depth_mm": Field("figure", DIGITS),
+    "strokes.standoff_mm": Field("motion", DIGITS, 1e-9),
+    "strokes.psi_deg": Field("motion"),
+    **{f"strokes.joints_deg.{each}": Field("motion") for each in ("start", "target", "end", "breakpoints")},
+    "strokes.feeds_mm_s.plunge": Field("figure", DIGITS),
+    "strokes.feeds_mm_s.retract": Field("figure", DIGITS),
+    **{f"strokes.{key}": field for key, field in _CORNER.items()},
+    "strokes.reversals_in_material": _EXACT,
+    "strokes.reversals_in_air": _EXACT,
+    "strokes.tool": _EXACT,
+    "strokes.answer": Field("input"),  # each is checked as a hole of its own
     "findings": Field("finding"),
 }
 """Likewise of a hole, by the path within it; that of a depth file has its own below `plan`."""

@@ -8,18 +8,21 @@ from pydantic import ConfigDict, Field
 
 from zerorev.files.robot_schema import FrameForm, RobotForm, ToolForm
 from zerorev.files.schema import CycleForm, SettingsForm
-from zerorev.files.stated_forms import Form, Many, SixMeasured, keys_of
+from zerorev.files.stated_forms import Counted, Form, Many, SixMeasured, keys_of
 from zerorev.files.values import (
     MOST_BREAKPOINTS,
     MOST_HOLES,
+    MOST_STROKES,
     Branch,
     Depth,
     Name,
     NotNegative,
     PlaceMm,
+    Positive,
     SixDeg,
     SpinsDeg,
     StandoffsMm,
+    StrokeName,
 )
 from zerorev.model.finding import Finding
 from zerorev.model.measures import Measures
@@ -33,6 +36,7 @@ from zerorev.model.plan import (
     LostMotionEvent,
     Optimality,
     Score,
+    Stroke,
     Transition,
     Verification,
     Within,
@@ -52,6 +56,7 @@ __all__ = [
     "PlanFile",
     "PlanHead",
     "PlanHole",
+    "StrokeForm",
     "TransitionForm",
     "VerifiedForm",
 ]
@@ -160,6 +165,34 @@ class WithinForm(Form):
     """How far the part may stand off its part frame."""
 
 
+class FeedsForm(Form):
+    """Feeds of a stroke."""
+
+    plunge: Positive = Field(description="a number above 0 [mm/s]")
+    retract: Positive = Field(description="a number above 0 [mm/s]")
+
+
+@keys_of(Stroke, needed=True)
+class StrokeForm(Form):
+    """One stroke of a hole."""
+
+    depth_mm: Depth = Field(description="a number above 0 [mm]: how deep it goes")
+    standoff_mm: StandoffsMm = Field(
+        description="three numbers or more [mm]: breakpoints in order of motion, counted from the hole's own target"
+    )
+    psi_deg: SpinsDeg = Field(description="as many numbers [deg] as standoff_mm: the spins there")
+    joints_deg: JointsDegForm = Field(description="a mapping of start, target, end and breakpoints")
+    feeds_mm_s: FeedsForm = Field(description="a mapping of plunge and retract [mm/s]")
+    corner: CornerForm | None = Field(
+        description="a mapping of how the motion turns round at the corner, and what that costs; or null: not said"
+    )
+    reversals_in_material: Counted = Field(description="a whole number: reversals of all joints in the stroke itself")
+    answer: PlanHole | None = Field(
+        description="a mapping: the stroke as a hole of its own, which ends where the stroke does; or null: it is the "
+        "only one, so that what the hole says is said of it"
+    )
+
+
 @keys_of(HolePlan, needed=True)
 @keys_of(Score, or_null=True)
 class PlanHole(Form):
@@ -167,7 +200,7 @@ class PlanHole(Form):
 
     # Any: as it is stated in Score or HolePlan
 
-    id: Name = Field(description="text: the hole's id")
+    id: StrokeName = Field(description="text: the hole's id")
     group: Name | None = Field(
         default=None, description="text: with which it is drilled in an order by groups; or null"
     )
@@ -238,6 +271,14 @@ class PlanHole(Form):
     corner: CornerForm | None = Field(
         default=None,
         description="a mapping of how the motion turns round at the corner, and what that costs; or null: not said",
+    )
+    strokes: Many[StrokeForm] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=MOST_STROKES,
+        description="a list of the strokes with which the hole is drilled, in order; or null: not said. Of several, "
+        "standoff_mm, psi_deg, joints_deg, corner and critical rates of the hole are those of the first one, the other "
+        "figures those of all together",
     )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 

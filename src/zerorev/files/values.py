@@ -9,11 +9,13 @@ from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
 from zerorev.visible import one_line
 
 __all__ = [
-    "INERTIA", "MOST_BREAKPOINTS", "MOST_HOLES", "Angle", "AnglesDeg", "Branch", "Depth", "Id", "Inertia", "Length",
-    "Name", "NotNegative", "PlaceMm", "Positive", "SixDeg", "SixPositive", "SpinsDeg", "StandoffsMm", "Three",
+    "INERTIA", "MOST_BREAKPOINTS", "MOST_HOLES", "MOST_STROKES", "Angle", "AnglesDeg", "Branch", "Depth", "Id",
+    "Inertia", "Length", "Name", "NotNegative", "PlaceMm", "Positive", "SixDeg", "SixPositive", "SpinsDeg",
+    "StandoffsMm", "StrokeName", "Three",
 ]  # fmt: skip
 
 MOST_HOLES = 100_000
+MOST_STROKES = 1_000  # of a hole
 MOST_BREAKPOINTS = 10_000  # of a motion
 
 
@@ -21,7 +23,9 @@ def _id_text(value: object) -> object:
     return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-Name = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$"), AfterValidator(one_line)]
+_LINE = r"^[^\x00-\x1f\x7f]+$"
+Name = Annotated[str, Field(min_length=1, max_length=100, pattern=_LINE), AfterValidator(one_line)]
+StrokeName = Annotated[str, Field(min_length=1, max_length=120, pattern=_LINE), AfterValidator(one_line)]
 Id = Annotated[Name, BeforeValidator(_id_text), WithJsonSchema({"type": ["string", "integer"]})]
 
 # Far beyond any arm, and near enough that no number overflows and no search takes hours.

@@ -1,4 +1,4 @@
-"""How a hole is drilled: in one go, or drawing the drill back to break the chips; and how long the tool dwells."""
+"""How a hole is drilled: in one go, breaking chips, or in several strokes; and how long the tool dwells."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LONGEST_DWELL", "MOST_BACK", "Cycle", "CycleKind"]
 
-CycleKind = Literal["single", "chip_break"]
+CycleKind = Literal["single", "chip_break", "peck"]
 MOST_PECKS = 200
 MOST_BACK = 2e-3  # [m] that a drill is drawn back within one motion: further is a retract
 LONGEST_DWELL = 10.0  # [s]: two or three turns of the slowest spindle are far shorter
@@ -31,11 +31,13 @@ class Cycle:
             words={
                 "single": "in one go",
                 "chip_break": "drawing back by back_mm each depth_mm, the drill in the hole, all of it one motion",
+                "peck": "pulling the drill out of the hole each depth_mm, each stroke a motion of its own",
             }
         ),
     ] = "single"
     depth: Annotated[
-        float | None, Number("drilled from one break of the chips to the next", MM, none="no chips are broken", above=0)
+        float | None,
+        Number("drilled from one break of the chips, or one stroke, to the next", MM, none="in one go", above=0),
     ] = None
     back: Annotated[
         float, Number("how far the tool draws back to break them, at the feed of the plunge", MM, above=0)
@@ -52,19 +54,20 @@ class Cycle:
     ] = 0.0
 
     def __post_init__(self) -> None:
-        """Check ranges, and that a depth is there where chips are broken."""
+        """Check ranges, and that a depth is there where chips are broken or strokes are made."""
         check(self)
         if abs(self.dwell * HUNDREDTHS - round(self.dwell * HUNDREDTHS)) > 1e-9:
             raise InputError(
                 f"a dwell of {self.dwell:g} s", where="cycle, dwell_s", accepted="hundredths of a second, e.g. 0.12"
             )
-        if self.kind == "chip_break" and self.depth is None:
-            raise InputError("breaks chips, but not how often", where="cycle", accepted="depth_mm beside it, e.g. 5")
+        if self.kind != "single" and self.depth is None:
+            what = "breaks chips, but not how often" if self.kind == "chip_break" else "pecks, but not how deep"
+            raise InputError(what, where="cycle", accepted="depth_mm beside it, e.g. 5")
         if self.back > MOST_BACK:
             raise InputError(
                 f"draws back by {self.back * 1e3:g} mm", where="cycle, back_mm", accepted=f"{MOST_BACK * 1e3:g} or less"
             )
-        if self.depth is not None and self.back >= self.depth:
+        if self.kind == "chip_break" and self.depth is not None and self.back >= self.depth:
             raise InputError(
                 f"draws back by {self.back * 1e3:g} mm each {self.depth * 1e3:g} mm", where="cycle, back_mm",
                 accepted="less than depth_mm",
@@ -76,6 +79,8 @@ class Cycle:
         parts = []
         if self.kind == "chip_break" and self.depth is not None:
             parts.append(f"chips broken each {self.depth * 1e3:g} mm by drawing back {self.back * 1e3:g} mm")
+        if self.kind == "peck" and self.depth is not None:
+            parts.append(f"strokes of {self.depth * 1e3:g} mm more each, out of the hole between them")
         if self.dwell:
             parts.append(f"a dwell of {self.dwell:g} s at the target")
         return ", ".join(parts) or "in one go"
@@ -93,13 +98,32 @@ class Cycle:
 
         if self.kind != "chip_break" or self.depth is None:
             return np.empty(0)
+        self._check_count(depth)
+        found = depth - self.depth * np.arange(1, MOST_PECKS + 1)
+        return np.asarray(found[found > self.back * 1.000001])
+
+    def strokes(self, depth: float) -> tuple[float, ...]:
+        """How deep each stroke of a hole goes, rising, the last one all the way [m].
+
+        Args:
+            depth: of the hole [m].
+
+        Raises:
+            InputError: there are too many.
+        """
+        if self.kind != "peck" or self.depth is None:
+            return (depth,)
+        self._check_count(depth)
+        whole = int(depth / self.depth * (1 - 1e-9))
+        return (*(self.depth * n for n in range(1, whole + 1)), depth)
+
+    def _check_count(self, depth: float) -> None:
+        assert self.depth is not None
         if depth / self.depth > MOST_PECKS:
             raise InputError(
                 f"{depth / self.depth:.0f} pecks in {depth * 1e3:g} mm", where="cycle, depth_mm",
                 accepted=f"{MOST_PECKS} or fewer, so {depth * 1e3 / MOST_PECKS:g} mm or more",
             )  # fmt: skip
-        found = depth - self.depth * np.arange(1, MOST_PECKS + 1)
-        return np.asarray(found[found > self.back * 1.000001])
 
 
 Cycle.__doc__ = with_attributes(Cycle)

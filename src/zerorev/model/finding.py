@@ -44,6 +44,7 @@ FindingKind = Literal[
     "no_stroke",
     "no_torque",
     "normals",
+    "peck",
     "posture_change",
     "printable",
     "program_size",

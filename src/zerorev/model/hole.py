@@ -52,6 +52,11 @@ class Hole:
         """
         return self.cycle or usual
 
+    @property
+    def entry(self) -> Array:
+        """Where the stroke begins [m], shape (3,)."""
+        return self.target - self.depth * self.direction
+
     def __post_init__(self) -> None:
         """Check the numbers; scale the direction; make psi_zero perpendicular to it."""
         where = f"hole {self.id}"

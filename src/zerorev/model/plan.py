@@ -273,6 +273,23 @@ class Optimality:
 
 
 @dataclass(frozen=True)
+class Stroke:
+    """One of several strokes of a hole: a motion of its own, from a stop outside the material to the next one.
+
+    Attributes:
+        answer: of the hole that ends where the stroke does (`zerorev.model.strokes.stroke_hole`), with the motion of
+            the stroke and all that is said of that.
+        tool: which of the job's tools makes it, from 0.
+    """
+
+    answer: HolePlan
+    reversals_in_air: Annotated[
+        int, Count("reversals outside the material since the stroke before; for the first one 0")
+    ] = 0
+    tool: Annotated[int, Count("which of the tools makes it, from 0")] = 0
+
+
+@dataclass(frozen=True)
 class HolePlan(Shown):
     """One hole's answer.
 
@@ -295,6 +312,9 @@ class HolePlan(Shown):
         certified_within: every placement error of the part within these bounds is certified, too; None until proven.
         lost_motion: what the gears are predicted to add at the tip; None where the robot's masses are not known.
         corner: how the motion turns round; None without one, and in files of before it was said.
+        feeds: of the plunge and of the retract [m/s]; None without a motion, and in files of before they were said.
+        strokes: all of them, of a hole that is drilled in several. Motion, corner and critical rates are those of the
+            first one then, stand-offs counted from the hole's own target; the score is that of all together.
     """
 
     hole: Hole
@@ -333,6 +353,8 @@ class HolePlan(Shown):
         float | None,
         Figure("time of the hole's own moves at their feeds", S, least=0, null=None, none="no motion", added=True),
     ] = None
+    feeds: tuple[float, float] | None = None
+    strokes: tuple[Stroke, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -423,6 +445,7 @@ for _noun in (
     Certificate,
     Within,
     Optimality,
+    Stroke,
     HolePlan,
     Transition,
 ):

@@ -431,7 +431,7 @@ class Settings:
         check_controller(self.robroot, self.external_axes, self.header)
         self._check_weights()
         if self.cycle.kind != "single" and self.legs == "free":
-            raise InputError("free legs do not break chips", where="cycle", accepted="legs: straight, or kind: single")
+            raise InputError("free legs drill in one go", where="cycle", accepted="legs: straight, or kind: single")
         turning_of(self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle.dwell)
 
     def _check_weights(self) -> None:

@@ -56,6 +56,7 @@ def answered(
         answer,
         corner=corner_of(drilling, settings, answer.motion),
         cycle_time=cycle_time(drilling, settings, answer.motion),
+        feeds=(settings.feed_plunge, settings.feed_retract),
     )
     answer = replace(answer, verified=verify_hole(robot, tool, settings, answer))
     return replace(answer, findings=motion_findings(drilling, settings, answer))

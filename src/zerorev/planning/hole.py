@@ -21,6 +21,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.planning.answered import answered, motion_findings
+from zerorev.planning.pecks import pecked
 from zerorev.planning.why_none import why_none, why_too_short
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.chip_break import chip_breaking
@@ -30,7 +31,7 @@ from zerorev.search.optimum import alternatives, deepest_as_drilled, optimum, to
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.twins import gentlest_first
 
-__all__ = ["lever_findings", "plan", "plan_deepest"]
+__all__ = ["evaluated_stroke", "lever_findings", "plan", "plan_deepest"]
 
 SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
 # lengths for an arm of size 1 (`Robot.size`)
@@ -63,6 +64,8 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     cycle = hole.drilled_by(settings.cycle)
     if hole.profile is None and cycle.kind == "chip_break":
         return _chip_breaking(drilling, settings, cycle)
+    if hole.profile is None and len(cycle.strokes(hole.depth)) > 1:
+        return _with_deepest(pecked(drilling, settings, cycle), settings, deepest_as_drilled(drilling, settings))
     if hole.profile is None:
         found = optimum(drilling, settings)
         best = () if found.motion is None else gentlest_first(drilling, settings, found.motion)
@@ -72,6 +75,19 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         return _with_deepest(answer, settings, found.deepest)
     answer = _evaluated(drilling, settings, hole.profile)
     return _with_deepest(answer, settings, deepest_as_drilled(drilling, settings))
+
+
+def evaluated_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> HolePlan:
+    """The answer of a stroke whose motion is given; of its hole nothing else is asked.
+
+    Args:
+        robot: the arm.
+        tool: the drill.
+        hole: which ends where the stroke does, with the motion and its branch.
+        settings: how.
+    """
+    assert hole.profile is not None
+    return _evaluated(Drilling(robot, tool, hole, settings.limit_margin), settings, hole.profile)
 
 
 def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None) -> HolePlan:

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache, partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -22,16 +22,18 @@ from zerorev.files.units import deg_per_mm, mm
 from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Strokes, Verification
+from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Stroke, Strokes, Verification
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import of_strokes, stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.answered import cycle_time, motion_findings
 from zerorev.planning.corner import corner_of
-from zerorev.planning.hole import lever_findings, plan, plan_deepest
+from zerorev.planning.hole import evaluated_stroke, lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
+from zerorev.planning.pecks import strokes_together
 from zerorev.planning.sequence import moves_of, time_of
 from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.search.rank import Candidate, Order
@@ -44,6 +46,7 @@ from zerorev.workers import Machines, Workers
 __all__ = ["Checked", "check_hole", "check_plan"]
 
 BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
+PLACE = 1e-9  # [m]
 OF_A_PROOF = "tolerance"  # one that a certificate adds
 LATER: tuple[FindingKind, ...] = (
     "near_limit",
@@ -105,7 +108,7 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
         Machines(workers),
     ) as checkers:
         for hole, checked in zip(stated.holes, checkers.map(stated.holes, len(stated.holes)), strict=True):
-            holes.append(replace(hole, verified=checked.verified))
+            holes.append(replace(hole, verified=checked.verified, strokes=checked.strokes))
             wrong += [_error(message, hole.hole.id) for message in checked.wrong]
             least += checked.least_travel
             if progress:
@@ -121,11 +124,13 @@ class CheckedHole(NamedTuple):
         verified: the outcome, None without a motion.
         wrong: one sentence for each field that differs: its name, what is stated and what is found.
         least_travel: of the motion that is found when it is searched for again [rad], or of the stated one.
+        strokes: of a hole that is drilled in several, each with the outcome.
     """
 
     verified: Verification | None
     wrong: tuple[str, ...]
     least_travel: float = 0.0
+    strokes: tuple[Stroke, ...] = ()
 
 
 def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
@@ -164,14 +169,24 @@ def without_proofs(plan: Plan) -> Plan:
     Args:
         plan: any plan.
     """
-    return replace(plan, holes=tuple(
-        replace(hole, certificate=None, certified_within=None, findings=_but(hole.findings, OF_A_PROOF))
-        for hole in plan.holes
-    ))  # fmt: skip
+
+    def bare(strokes: Plan) -> Plan:
+        return replace(strokes, holes=tuple(
+            replace(hole, certificate=None, certified_within=None, findings=_but(hole.findings, OF_A_PROOF))
+            for hole in strokes.holes
+        ))  # fmt: skip
+
+    return stroke_by_stroke(plan, bare)
 
 
 def check_hole(
-    robot: Robot, tool: Tool, settings: Settings, strokes: Strokes, stated: HolePlan, *, chosen: bool = False
+    robot: Robot,
+    tool: Tool,
+    settings: Settings,
+    strokes: Strokes | Literal["given"],
+    stated: HolePlan,
+    *,
+    chosen: bool = False,
 ) -> CheckedHole:
     """Check the motion of one hole, and compute again what is stated of it.
 
@@ -179,17 +194,20 @@ def check_hole(
         robot: the arm.
         tool: the drill.
         settings: as planned.
-        strokes: of the plan.
+        strokes: of the plan; `given` for one of several strokes of a hole.
         stated: what is claimed.
         chosen: whether the motion may have been chosen for the sequence of the holes, at the cost of some travel.
     """
+    if stated.strokes:
+        return _check_strokes(robot, tool, settings, stated)
     settings = settings.of(stated.hole)
     deepest = strokes == "deepest" and stated.hole.profile is None
-    again = (
-        plan_deepest(robot, tool, _with_its_motion(stated), settings)
-        if deepest
-        else plan(robot, tool, stated.hole, settings)
-    )
+    if strokes == "given":
+        again = evaluated_stroke(robot, tool, stated.hole, settings)
+    elif deepest:
+        again = plan_deepest(robot, tool, _with_its_motion(stated), settings)
+    else:
+        again = plan(robot, tool, stated.hole, settings)
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
         unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), again.findings)
@@ -234,6 +252,50 @@ def check_hole(
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
     least = again.score if again.score is not None else stated.score
     return CheckedHole(replace(verified, subject=known), tuple(differences), least.travel if least else 0.0)
+
+
+def _check_strokes(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan) -> CheckedHole:
+    """Check each stroke of a hole, and what they are said to come to together."""
+    again = plan(robot, tool, stated.hole, settings)
+    wrong: list[str] = []
+    depths = [stroke.answer.hole.depth for stroke in stated.strokes]
+    asked = stated.hole.drilled_by(settings.cycle).strokes(stated.hole.depth)
+    if len(depths) != len(asked) or not np.allclose(depths, asked, rtol=0, atol=PLACE):
+        wrong.append(
+            differ("strokes, depth_mm", [float(mm(each)) for each in depths], [float(mm(each)) for each in asked])
+        )
+    checked = [check_hole(robot, tool, settings, "given", stroke.answer, chosen=True) for stroke in stated.strokes]
+    wrong += [f"strokes[{n}].answer.{message}" for n, each in enumerate(checked) for message in each.wrong]
+    answers = [stroke.answer for stroke in stated.strokes]
+    found = strokes_together(robot, tool, settings, stated.hole, answers, ())
+    own = tuple(each for each in again.findings if each.kind in ("peck", "deepest"))
+    found = replace(
+        found, deepest=again.deepest, deepest_at_most=again.deepest_at_most, findings=(*own, *found.findings)
+    )
+    wrong += _fields_differ(robot, stated, found, dict)
+    wrong += findings_differ(_but(stated.findings, OF_A_PROOF), _but(found.findings, OF_A_PROOF))
+    for name, here, there in (
+        ("reversals", _reversals(found), _reversals(again)),
+        ("reversals_in_air", _in_air(found), _in_air(again)),
+    ):
+        if there < here:
+            wrong.append(f"{differ(name, here, there)} by searching again")
+            break
+    verified = [
+        replace(stroke, answer=replace(stroke.answer, verified=each.verified))
+        for stroke, each in zip(stated.strokes, checked, strict=True)
+    ]
+    whole = of_strokes(stated.hole, verified, cycle_time=stated.cycle_time)
+    travel = 0.0 if stated.score is None else stated.score.travel
+    return CheckedHole(whole.verified, tuple(wrong), travel, tuple(verified))
+
+
+def _reversals(answer: HolePlan) -> int:
+    return 0 if answer.score is None else answer.score.reversals
+
+
+def _in_air(answer: HolePlan) -> int:
+    return sum(stroke.reversals_in_air for stroke in answer.strokes)
 
 
 def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:

@@ -32,7 +32,7 @@ from zerorev.motion.joint_path import FULL_TURN
 from zerorev.planning.answered import with_another_motion
 from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.program.between import accelerations, moves_between, time_of_moves
-from zerorev.program.ways import Stop, Way, stop_of
+from zerorev.program.ways import Stop, Way, stop_of, stop_of_answer
 from zerorev.search.members import members
 from zerorev.search.rank import Candidate, Order
 from zerorev.workers import HERE, Machines, Workers
@@ -63,6 +63,7 @@ class Member:
         end: where the move away begins, likewise.
         travel: sum over the joints of the angle moved [rad].
         time: from the safe height and to it [s].
+        answer: of a hole that is drilled in several strokes; of others the motion is enough.
     """
 
     profile: Profile
@@ -72,6 +73,7 @@ class Member:
     end: Array
     travel: float
     time: float
+    answer: HolePlan | None = None
 
     def turned(self, turns: Array) -> Member:
         """The same with whole turns of the axes added [rad], shape (6,)."""
@@ -149,10 +151,10 @@ def sequenced(
         changed.clear()
     stops = []
     for n in order:
-        if n in changed:
-            stops.append(_stop(job.robot, job.tool, job.settings, changed[n]))
+        member = chosen[n]
+        if (answer := changed.get(n, member.answer)) is not None:
+            stops.append(_stop(job.robot, job.tool, job.settings, answer))
         else:
-            member = chosen[n]
             motion = Motion(member.profile, member.branch, member.joints)
             stops.append(stop_of(job.robot, job.tool, job.settings, job.holes[n], motion))
     for n, final in changed.items():
@@ -199,8 +201,13 @@ def time_of(holes: Iterable[float | None], moves: Iterable[Transition]) -> float
 
 def _stop(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> Stop:
     """A hole's answer as a stop of the tour; of its motion the digits count that a file has."""
+    strokes = tuple(replace(each, answer=_with_its_digits(each.answer)) for each in answer.strokes)
+    return stop_of_answer(robot, tool, settings, replace(_with_its_digits(answer), strokes=strokes))
+
+
+def _with_its_digits(answer: HolePlan) -> HolePlan:
     assert answer.motion is not None
-    return stop_of(robot, tool, settings, answer.hole, written_motion(answer.motion))
+    return replace(answer, motion=written_motion(answer.motion))
 
 
 def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: HolePlan) -> Offer:
@@ -208,6 +215,11 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     motion, score, settings = answer.motion, answer.score, settings.of(answer.hole)
     if motion is None or score is None:
         return ()
+    if answer.strokes:
+        stop = _stop(robot, tool, settings, answer)
+        time = time_of_moves(robot, stop.way.arrival) + time_of_moves(robot, stop.departure)
+        ends = stop.way.arrival[0], stop.departure[-1]
+        return (Member(motion.profile, motion.branch, motion.joints, *ends, score.travel, time, answer),)
     drilling = Drilling(robot, tool, answer.hole, settings.limit_margin)
     planned = _member(drilling, settings, motion, score.travel)
     passed = answer.verified is not None and answer.verified.passed

@@ -84,11 +84,17 @@ class ToolTurn:
 
     def add(self, answer: HolePlan) -> None:
         """Take the next answer."""
+        strokes = [each for each in [stroke.answer for stroke in answer.strokes] or [answer] if each.motion is not None]
+        if strokes:
+            spins, last = zip(*(self._stroke(each) for each in strokes), strict=True)
+            self._runs[answer.hole.id] = _Run(np.concatenate(spins), np.concatenate(last))
+
+    def _stroke(self, answer: HolePlan) -> tuple[Array, Array]:
+        """Spins and angles of the last joint where the lead-in begins and at the breakpoints [rad], (n,) each."""
         motion, plan = answer.motion, self._plan
-        if motion is not None:
-            lead_in = find_lead_in(Drilling.of(plan, answer.hole), motion, plan.settings.lead_in)
-            last = np.append(lead_in.joints[5], motion.joints[:, 5])
-            self._runs[answer.hole.id] = _Run(_spins(motion, lead_in), last)
+        assert motion is not None
+        lead_in = find_lead_in(Drilling.of(plan, answer.hole), motion, plan.settings.lead_in)
+        return _spins(motion, lead_in), np.append(lead_in.joints[5], motion.joints[:, 5])
 
     def findings(self) -> tuple[Finding, ...]:
         """How far it turns; nothing where no hole has a motion."""

@@ -44,8 +44,11 @@ class _Leg:
     @property
     def joints(self) -> Array:
         """Where it begins, stops between, and ends [rad], shape (n, 6)."""
-        departure = self.home if self.one is None else self.one.way.departure
-        arrival = self.home if self.other is None else self.other.way.arrival
+        one, other = self.one, self.other
+        if one is not None and other is not None and one.shares_hole(other):
+            one, other = one.rising(None), other.rising(None)  # from one stroke of a hole to the next
+        departure = self.home if one is None else one.departure
+        arrival = self.home if other is None else other.way.arrival
         return np.concatenate([departure, arrival])
 
     @property
@@ -68,10 +71,7 @@ class _Leg:
 
     def rising(self, height: float) -> _Leg:
         """The same through points at a height over the surface [m]."""
-        one, other = (
-            None if stop is None else replace(stop, way=replace(stop.way, safe_height=height))
-            for stop in (self.one, self.other)
-        )
+        one, other = (None if stop is None else stop.rising(height) for stop in (self.one, self.other))
         return replace(self, one=one, other=other)
 
 

@@ -11,16 +11,17 @@ from typing import TypeVar
 from zerorev.errors import NotExportableError
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.strokes import by_stroke, ids_of_strokes
 from zerorev.program.dialect import ProgramFile
 from zerorev.program.dialects import dialect_for
 from zerorev.program.neutral import build_program
 from zerorev.program.preflight import preflight
 from zerorev.program.retract import retract_of
-from zerorev.program.selection import number_of, selection
+from zerorev.program.selection import Selection, number_of, selection
 from zerorev.verify.check import subject, verify_hole
 from zerorev.workers import Machines, Workers
 
-__all__ = ["Exported", "export", "exporting", "retract_name", "retract_program"]
+__all__ = ["Exported", "export", "exporting", "program_of", "retract_name", "retract_program"]
 
 T = TypeVar("T")
 
@@ -69,7 +70,7 @@ def export(
     this process or one of its workers, is checked once more.
 
     Args:
-        plan: what to run.
+        plan: what to run; each of several strokes of a hole is written as a hole of its own.
         controller: one of `DIALECTS`; None: the one that the plan was made for, or that of the robot's maker.
         skip_failed: leave out the holes that must not be exported instead of refusing; a finding names each.
         name: of the program; by default the plan's.
@@ -99,7 +100,8 @@ def export(
         version=version,
         workers=workers,
     )
-    return _finished(steps, lambda checked: progress(checked, len(plan.holes)) if progress else None)
+    count = len(by_stroke(plan).holes)
+    return _finished(steps, lambda checked: progress(checked, count) if progress else None)
 
 
 def _finished(steps: Generator[None, None, T], reached: Callable[[int], object] = lambda checked: None) -> T:
@@ -130,7 +132,7 @@ def exporting(
 ) -> Generator[None, None, Exported]:
     """The same as `export`, step by step: comes back after each hole that was checked, and returns the program."""
     dialect = dialect_for(plan, controller)
-    wanted = selection(plan, start, only)
+    wanted, plan = _selection(plan, start, only), by_stroke(plan)
     verified = yield from _verified(plan, workers, wanted.ids)
     program = build_program(verified, skip_failed=skip_failed, only=wanted.ids, plan_file=plan_file)
     program = replace(
@@ -197,6 +199,8 @@ def retract_program(
     if dialect.retract_text is None:
         why = f"a program that brings the drill out of a hole is not offered in {dialect.controller.language}"
         raise NotExportableError((why,))
+    hole_id = ids_of_strokes(plan, [hole_id])[-1]
+    plan = by_stroke(plan)
     called = dialect.program_name(name or retract_name(plan, hole_id))
     number_of(plan, hole_id, "retract")
     way = retract_of(_finished(_verified(plan, 1, [hole_id])), hole_id, plan_file)
@@ -205,12 +209,28 @@ def retract_program(
     return Exported((dialect.file(called, text),), way.findings, called, 1)
 
 
-def retract_name(plan: Plan, hole_id: str) -> str:
-    """What a retract program is called after.
+def program_of(plan: Plan, start: str | None = None, only: Sequence[str] | None = None) -> str:
+    """What a program is called after, of a plan or of a part of it: see `export`.
 
     Raises:
         InputError: a hole that the plan does not have.
     """
+    return _selection(plan, start, only).name
+
+
+def _selection(plan: Plan, start: str | None, only: Sequence[str] | None) -> Selection:
+    """The strokes that are wanted, of a plan of holes."""
+    first = None if start is None else ids_of_strokes(plan, [start])[0]
+    return selection(by_stroke(plan), first, None if only is None else ids_of_strokes(plan, only))
+
+
+def retract_name(plan: Plan, hole_id: str) -> str:
+    """What a retract program is called after; of a hole of several strokes the last one is meant.
+
+    Raises:
+        InputError: a hole that the plan does not have.
+    """
+    hole_id, plan = ids_of_strokes(plan, [hole_id])[-1], by_stroke(plan)
     return f"{plan.name}_out_{number_of(plan, hole_id, 'retract')}"
 
 

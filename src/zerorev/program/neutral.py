@@ -241,7 +241,7 @@ def _between(plan: Plan, stops: Sequence[Stop]) -> tuple[list[Array], Array]:
         raise NotExportableError(tuple(errors))
     if plan.settings.home_joints is not None:
         return [moves[0].joints[:-1], *(move.joints[1:-1] for move in moves[1:-1])], moves[-1].joints[1:]
-    return [stops[0].way.arrival[:-1], *(move.joints[1:-1] for move in moves)], stops[-1].way.departure[1:]
+    return [stops[0].way.arrival[:-1], *(move.joints[1:-1] for move in moves)], stops[-1].departure[1:]
 
 
 def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HoleProgram:

@@ -17,14 +17,16 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import Motion
+from zerorev.model.plan import HolePlan, Motion
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.program.lead_in import LeadIn, find_lead_in
 from zerorev.program.outward import Line, Outward, outward
 
-__all__ = ["Stop", "Way", "stop_of"]
+__all__ = ["Stop", "Way", "stop_of", "stop_of_answer"]
+
+SAME = 1e-9  # [m], and of a unit vector: two strokes of one hole
 
 
 @dataclass(frozen=True)
@@ -108,17 +110,34 @@ class Stop:
         hole: which.
         branch: of the motion.
         way: to it and away.
+        leaving: the way away, where the hole is drilled in several strokes: that of the last one.
     """
 
     hole: Hole
     branch: int
     way: Way
+    leaving: Way | None = None
 
     @property
     def plane(self) -> Array:
         """The surface: unit direction into the part, and its product with a point of the surface [m], shape (4,)."""
         into = self.hole.direction
-        return np.array([*into, into @ self.hole.target - self.way.surface])
+        return np.array([*into, into @ self.hole.target - self.hole.depth])
+
+    @property
+    def departure(self) -> Array:
+        """Joints through which moves of all axes lead away [rad], shape (n, 6)."""
+        return (self.leaving or self.way).departure
+
+    def rising(self, height: float | None) -> Stop:
+        """The same through points at a height over the surface [m]; None: straight from the stop and to it."""
+        leaving = None if self.leaving is None else replace(self.leaving, safe_height=height)
+        return replace(self, way=replace(self.way, safe_height=height), leaving=leaving)
+
+    def shares_hole(self, other: Stop) -> bool:
+        """Whether another stop is of the same hole: another stroke."""
+        along = np.abs(self.hole.direction - other.hole.direction).max() < SAME
+        return bool(along and np.abs(self.hole.entry - other.hole.entry).max() < SAME)
 
 
 def stop_of(robot: Robot, tool: Tool, settings: Settings, hole: Hole, motion: Motion) -> Stop:
@@ -133,6 +152,25 @@ def stop_of(robot: Robot, tool: Tool, settings: Settings, hole: Hole, motion: Mo
     """
     way = Way.of(Drilling(robot, tool, hole, settings.limit_margin), motion, settings)
     return Stop(hole, motion.branch, way)
+
+
+def stop_of_answer(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> Stop:
+    """A hole's answer, with a motion, as a stop of the tour: of several strokes from the first to the last.
+
+    Args:
+        robot: the arm.
+        tool: on its flange.
+        settings: how the way is to be.
+        answer: of the hole.
+    """
+    ends = [stroke.answer for stroke in answer.strokes] or [answer]
+    assert ends[0].motion is not None
+    assert ends[-1].motion is not None
+    first = stop_of(robot, tool, settings, ends[0].hole, ends[0].motion)
+    if len(ends) == 1:
+        return first
+    last = stop_of(robot, tool, settings, ends[-1].hole, ends[-1].motion)
+    return replace(first, hole=answer.hole, leaving=last.way)
 
 
 def _shorter(drilling: Drilling, name: str, wanted: float, way: Outward) -> Iterator[Finding]:

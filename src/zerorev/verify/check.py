@@ -12,6 +12,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Verification
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import posture_of
 from zerorev.verify.claims import (
@@ -40,11 +41,16 @@ def verify_plan(plan: Plan) -> Plan:
     Args:
         plan: any plan, also a wrong one.
     """
-    holes = tuple(
-        hole if hole.motion is None else replace(hole, verified=verify_hole(plan.robot, plan.tool, plan.settings, hole))
-        for hole in plan.holes
-    )
-    return replace(plan, holes=holes)
+
+    def checked(strokes: Plan) -> Plan:
+        robot, tool, settings = strokes.robot, strokes.tool, strokes.settings
+        holes = tuple(
+            hole if hole.motion is None else replace(hole, verified=verify_hole(robot, tool, settings, hole))
+            for hole in strokes.holes
+        )
+        return replace(strokes, holes=holes)
+
+    return stroke_by_stroke(plan, checked)
 
 
 def verify_hole(
@@ -136,13 +142,18 @@ def known_as_checked(plan: Plan) -> Plan:
     Args:
         plan: as read from a file that is known (`zerorev.files.checked_files`).
     """
-    holes = (
-        hole
-        if hole.verified is None
-        else replace(hole, verified=replace(hole.verified, subject=subject(plan.robot, plan.tool, plan.settings, hole)))
-        for hole in plan.holes
-    )
-    return replace(plan, holes=tuple(holes))
+
+    def known(strokes: Plan) -> Plan:
+        robot, tool, settings = strokes.robot, strokes.tool, strokes.settings
+        holes = tuple(
+            hole
+            if hole.verified is None
+            else replace(hole, verified=replace(hole.verified, subject=subject(robot, tool, settings, hole)))
+            for hole in strokes.holes
+        )
+        return replace(strokes, holes=holes)
+
+    return stroke_by_stroke(plan, known)
 
 
 def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> str:

@@ -93,6 +93,8 @@ def _breaks_as_asked(robot: Robot, settings: Settings, hole_plan: HolePlan, moti
     """Chips must be broken where the cycle asks for it, by drawing back as far, and nowhere else."""
     hole, profile = hole_plan.hole, motion.profile
     cycle = hole.cycle or settings.cycle
+    if (strokes := len(cycle.strokes(hole.depth))) > 1:
+        yield f"{strokes} strokes are asked for, and there is one"
     wanted = [place for at in cycle.breaks(hole.depth) for place in (at, at + cycle.back)]
     found = [float(profile.standoff[k]) for k in profile.turns if k < profile.corner]
     if len(found) != len(wanted):

@@ -17,7 +17,7 @@ from typing import Any
 from zerorev.errors import ZerorevError
 from zerorev.files.plan_conversion import as_written
 from zerorev.model.hole import Hole
-from zerorev.model.plan import HolePlan, Strokes
+from zerorev.model.plan import HolePlan, Plan, Strokes
 from zerorev.planning.job import answers
 from zerorev.planning.sequence import Sequenced, sequenced
 from zerorev.planning.tried_otherwise import TriedOtherwise
@@ -256,10 +256,10 @@ def certify(work: Work, holes: Sequence[Hole]) -> None:
         return
 
     def proven() -> Iterator[HolePlan]:
-        from zerorev.verify.certificate.certify import certify_hole
+        from zerorev.verify.certificate.certify import certify_plan
 
         for answer in plans:
-            yield replace(answer, certificate=certify_hole(job.robot, job.tool, job.settings, answer))
+            yield from certify_plan(Plan(job.robot, job.tool, job.settings, (answer,))).holes
 
     _answer(work, "proving", "proven", [answer.hole.id for answer in plans], state.strokes, proven)
 

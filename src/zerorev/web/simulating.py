@@ -11,6 +11,7 @@ from zerorev.cell.ensemble import HoleStudy, study
 from zerorev.cell.possible import possible_arms
 from zerorev.cell.reference import Manner
 from zerorev.errors import InputError
+from zerorev.model.strokes import by_stroke
 from zerorev.planning.hole import plan
 from zerorev.planning.job import unanswered
 from zerorev.web.computing import Work
@@ -77,8 +78,10 @@ def _simulated(state: State, motion: Steered, asked: Asked) -> Iterator[Simulate
     arms = yield from possible_arms(
         unanswered(job, state.strokes, recorded), cell, asked.arms, asked.seed, block=BLOCK, machines=Machines()
     )
+    # of a hole that is drilled in several strokes the last one is shown
+    strokes = by_stroke(unanswered(job, state.strokes, (answer,)))
     for found in study(
-        unanswered(job, state.strokes, (answer,)), arms.sets, manner=Manner(feed=asked.feed), thrust=asked.thrust,
+        strokes, arms.sets, manner=Manner(feed=asked.feed), thrust=asked.thrust,
         motions=(), machines=Machines(), block=BLOCK, growing=True,
     ):  # fmt: skip
         if not isinstance(found, HoleStudy):

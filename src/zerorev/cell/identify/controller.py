@@ -28,6 +28,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.ranges import RANGES, Range
 from zerorev.model.recording import Recording
+from zerorev.model.strokes import by_stroke
 from zerorev.workers import HERE, Machines, Workers
 
 __all__ = ["CONTROLLER", "Baseline", "Nearest", "baseline_of", "blocks_of", "controller_ranges", "nearest"]
@@ -79,7 +80,7 @@ def baseline_of(recording: Recording, plan: Plan, corner: float | None = None) -
         InputError: of none, or sampled too slowly for its feed.
     """
     why = ""
-    for hole in plan.holes:
+    for hole in by_stroke(plan).holes:
         if hole.motion is None:
             continue
         try:

@@ -11,6 +11,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.model.recording import Recording
+from zerorev.model.strokes import by_stroke
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward
 
@@ -65,6 +66,7 @@ def planned_hole(plan: Plan, hole: str | None) -> PlannedHole:
     Raises:
         InputError: no such hole, one without a motion, or several and none is named.
     """
+    plan = by_stroke(plan)
     found = [each for each in plan.holes if each.motion is not None and hole in (None, each.hole.id)]
     if len(found) != 1:
         ids = ", ".join(each.hole.id for each in plan.holes[:IDS_NAMED] if each.motion is not None)

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from zerorev.files.output import make_folder, write_bytes
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.strokes import by_stroke, ids_of_strokes
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.plane import twist_plane
 from zerorev.report.figures.rates import critical_rates
@@ -35,7 +36,7 @@ def write_figures(
     ids: Collection[str] | None = None,
     machines: Machines = HERE,
 ) -> list[Path]:
-    """Write each figure of each hole that has a motion as `HOLE_FIGURE.png`; infeasible holes are skipped.
+    """Write each figure of each hole or stroke that has a motion as `HOLE_FIGURE.png`; infeasible holes are skipped.
 
     Args:
         plan: what to draw.
@@ -52,7 +53,8 @@ def write_figures(
     """
     make_folder(folder)
     files = []
-    count = sum(hole.motion is not None and (ids is None or hole.hole.id in ids) for hole in plan.holes)
+    drilled = [hole for hole in plan.holes if hole.motion is not None and (ids is None or hole.hole.id in ids)]
+    count = sum(max(len(hole.strokes), 1) for hole in drilled)
     for n, (name, picture) in enumerate(drawn(plan, ids=ids, machines=machines), 1):
         write_bytes(folder / name, picture)
         files.append(folder / name)
@@ -69,6 +71,8 @@ def drawn(plan: Plan, *, ids: Collection[str] | None = None, machines: Machines 
         ids: of the holes to draw; None: all.
         machines: to draw on; the pictures are the same.
     """
+    ids = None if ids is None else ids_of_strokes(plan, ids)
+    plan = by_stroke(plan)
     chosen = [
         (stem, hole)
         for hole, stem in zip(plan.holes, file_stems(plan), strict=True)

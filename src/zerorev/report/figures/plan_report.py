@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.strokes import by_stroke
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.part_view import part_view
 from zerorev.report.figures.plane import twist_plane
@@ -56,7 +57,7 @@ def plan_report(plan: Plan, source: str) -> str:
     found = all_findings(plan)
     levels = Counter(finding.level for finding in found)
     worst = worst_holes(plan)
-    drawn = [hole for hole in worst if hole.motion is not None][:DRAWN]
+    drawn = [hole for hole in worst_holes(by_stroke(plan)) if hole.motion is not None][:DRAWN]
     return (
         environment("zerorev.report.figures", _shown)
         .get_template("plan_report.html.j2")

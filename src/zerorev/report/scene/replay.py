@@ -17,6 +17,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.strokes import by_stroke, ids_of_strokes
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.cell_data import SAMPLES, arm_data, holes_data, motion_data
 from zerorev.report.scene.urdf_meshes import Mesh
@@ -42,6 +43,7 @@ def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[S
     Raises:
         InputError: an unknown id, no hole with a motion, too many holes, or the player's library is not installed.
     """
+    plan, ids = by_stroke(plan), None if ids is None else ids_of_strokes(plan, ids)
     chosen = _chosen(plan, ids)
     samples = int(np.clip(POINTS // len(chosen), FEWEST_SAMPLES, SAMPLES))
     holes = [answer.hole for answer in chosen]

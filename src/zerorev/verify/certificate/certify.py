@@ -19,6 +19,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Certificate, HolePlan, Plan, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate.at_corner import planned_corner
 from zerorev.verify.certificate.blends import for_the_widest
@@ -38,14 +39,18 @@ def certify_plan(plan: Plan) -> Plan:
     Args:
         plan: any plan, also a wrong one.
     """
-    robot, tool, settings = plan.robot, plan.tool, plan.settings
-    holes = tuple(
-        hole
-        if hole.motion is None
-        else replace(hole, certificate=certify_hole(robot, tool, settings, hole), certified_within=None)
-        for hole in plan.holes
-    )
-    return replace(plan, holes=holes)
+
+    def certified(strokes: Plan) -> Plan:
+        robot, tool, settings = strokes.robot, strokes.tool, strokes.settings
+        holes = tuple(
+            hole
+            if hole.motion is None
+            else replace(hole, certificate=certify_hole(robot, tool, settings, hole), certified_within=None)
+            for hole in strokes.holes
+        )
+        return replace(strokes, holes=holes)
+
+    return stroke_by_stroke(plan, certified)
 
 
 def certify_hole(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -> Certificate:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Within
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.verify.certificate.arm import Setting, posture_of
 from zerorev.verify.certificate.certify import certify_hole
@@ -78,12 +80,12 @@ def certify_plan_within(plan: Plan, within: Within | None = None, ratio: float =
     elif not (math.isfinite(ratio) and ratio > 0):
         raise InputError(f"the ratio is {ratio}", where="tolerance", accepted="a finite length per angle above 0")
 
-    def answer(hole: HolePlan) -> Tolerance:
+    def answer(plan: Plan, hole: HolePlan) -> Tolerance:
         if within is None:
             return largest_within(plan.robot, plan.tool, plan.settings, plan.T_base_part, hole, ratio)
         return certify_within(plan.robot, plan.tool, plan.settings, plan.T_base_part, hole, within)
 
-    return replace(plan, holes=tuple(_proven(plan, hole, answer) for hole in plan.holes))
+    return stroke_by_stroke(plan, partial(_all_proven, answer=answer))
 
 
 def certify_plan_again(plan: Plan) -> Plan:
@@ -93,7 +95,7 @@ def certify_plan_again(plan: Plan) -> Plan:
         plan: any plan, also a wrong one.
     """
 
-    def answer(hole: HolePlan) -> Tolerance:
+    def answer(plan: Plan, hole: HolePlan) -> Tolerance:
         stated = hole.certified_within
         if stated is None:
             return Tolerance(None)
@@ -103,16 +105,20 @@ def certify_plan_again(plan: Plan) -> Plan:
         said = (finding.message for finding in hole.findings if finding.kind == "tolerance")
         return replace(found, decides=next(said, ""))
 
+    return stroke_by_stroke(plan, partial(_all_proven, answer=answer))
+
+
+def _all_proven(plan: Plan, answer: Callable[[Plan, HolePlan], Tolerance]) -> Plan:
     return replace(plan, holes=tuple(_proven(plan, hole, answer) for hole in plan.holes))
 
 
-def _proven(plan: Plan, hole: HolePlan, answer: Callable[[HolePlan], Tolerance]) -> HolePlan:
+def _proven(plan: Plan, hole: HolePlan, answer: Callable[[Plan, HolePlan], Tolerance]) -> HolePlan:
     """A hole with its certificate and, where it is certified, an answer's tolerance and finding."""
     if hole.motion is None:
         return hole
     certificate = certify_hole(plan.robot, plan.tool, plan.settings, hole)
     hole = replace(hole, certificate=certificate)
-    tolerance = answer(hole) if certificate.verdict == "certified" else Tolerance(None)
+    tolerance = answer(plan, hole) if certificate.verdict == "certified" else Tolerance(None)
     found = tuple(finding for finding in hole.findings if finding.kind != "tolerance")
     if tolerance.decides:
         level: Level = "warning" if tolerance.within is None else "info"
