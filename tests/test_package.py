@@ -109,4 +109,4 @@ def test_job_is_planned_checked_and_exported(job, tmp_path):
         ["export", os.fspath(plan), "--controller", "krl", "-o", os.fspath(program)],
     ):
         assert main(arguments) == FINE
-    assert program.read_text().count(";FOLD Hole ") == 3
+    assert program.read_text().count(";FOLD Hole ") == (6 if job.stem == "cad_panel" else 3)

@@ -30,6 +30,7 @@ def _with_files(page: Path, folder: Path) -> None:
 @pytest.mark.parametrize("name", [name for name, page in PAGES.items() if shown.commands(page)])
 def test_every_command_writes_what_the_page_shows(tmp_path, name):
     _with_files(PAGES[name], tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
     for command in shown.commands(PAGES[name]):
         code, output = shown.run(command, tmp_path)
         assert code == FAILING.get(name, 0), output

@@ -18,6 +18,7 @@ from zerorev.cli import (  # noqa: F401
     compare,
     depth,
     export,
+    holes,
     identify,
     map,
     map_compare,

@@ -10,9 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from zerorev.errors import InputError
-from zerorev.files.conversion import frame_from, hole_from, robot_from, settings_from, tool_from, with_feeds
-from zerorev.files.hole_list import all_of, given_of, in_base_frame, read_hole_list, text_of_list
-from zerorev.files.hole_meaning import as_in_a_job, meaning_of
+from zerorev.files.cad.as_listed import Asked, CadHoles, cad_holes, is_cad, read_cad
+from zerorev.files.cad.chosen import ALL
+from zerorev.files.cad.select_form import SelectForm
+from zerorev.files.conversion import frame_from, robot_from, settings_from, tool_from, with_feeds
+from zerorev.files.job_holes import cad_holes_of, holes_of
 from zerorev.files.named import named_document, shipped
 from zerorev.files.other_kinds import refuse_another_kind, refuse_map_folder
 from zerorev.files.output import write_text
@@ -21,13 +23,12 @@ from zerorev.files.plan_conversion import plan_from
 from zerorev.files.plan_data import FORMS, plan_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
 from zerorev.files.robot_schema import RobotFile, ToolFile
-from zerorev.files.schema import HoleForm, JobFile, SettingsForm
+from zerorev.files.schema import JobFile, SettingsForm
 from zerorev.files.stated_forms import Form
+from zerorev.files.table_units import Unit
 from zerorev.files.text import Document, json_document, json_text, read_bytes, read_text
 from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document
-from zerorev.model._arrays import Array
-from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
 from zerorev.model.robot import Robot
@@ -39,6 +40,7 @@ __all__ = [
     "plan_from_text",
     "plan_text",
     "plan_to_json",
+    "read_cad_holes",
     "read_job",
     "read_plan",
     "read_robot",
@@ -142,6 +144,37 @@ def job_from_dict(mapping: Mapping[str, Any], folder: str | Path = ".") -> Job:
     return _job(Document("job", dict(mapping)), Path(folder), "job")
 
 
+def read_cad_holes(path: str | Path, *, select: str | None = None, unit: Unit | None = None) -> CadHoles:
+    """The holes of a CAD file, or of a job whose holes are in one.
+
+    Args:
+        path: of a STEP or DXF file, or of a job file.
+        select: YAML, in place of that of the job.
+        unit: of the file's numbers, in place of that of the job.
+
+    Raises:
+        InputError: a file that cannot be read, a job without such a file, or nothing that is selected.
+    """
+    path = Path(path)
+    chosen = None if select is None else yaml_document(select, "--select")
+    form = None if chosen is None else checked(SelectForm, chosen)
+    if is_cad(path):
+        content = read_bytes(path, "a STEP or DXF file")
+        with inside(str(path)):
+            asked = Asked(form or ALL, unit)
+            return cad_holes(read_cad(content, path.name, asked), asked, None)
+    document = yaml_document(read_text(path, "a STEP file, a DXF file or a job file (YAML)"), str(path))
+    refuse_another_kind(document.data, document.file)
+    job = checked(JobFile, document)
+    if not (isinstance(job.holes, str) and is_cad(job.holes)):
+        accepted = "a STEP or DXF file, or a job with the path of one under holes"
+        raise InputError("its holes are not in a CAD file", where=document.where(("holes",)), accepted=accepted)
+    given = {key: value for key, value in (("select", form), ("unit", unit)) if value is not None}
+    with inside(document.where(("robot",))):
+        robot = read_robot(job.robot, path.parent)
+    return cad_holes_of(job.model_copy(update=given), document, path.parent, robot, frame_from(job.part_frame))
+
+
 def read_plan(path: str | Path) -> Plan:
     """The plan of a plan file or a depth file, or of a part of one that `zerorev.files.part` keeps.
 
@@ -225,59 +258,6 @@ def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bo
         tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
     with inside(document.file):
         settings, T_base_part = with_feeds(form, settings_from(form)), frame_from(form.part_frame)
-    notes: tuple[str, ...] = ()
-    if isinstance(form.holes, str):
-        holes, notes = _table(form, document, folder, tool, T_base_part, depth_needed=depth_needed)
-        notes = tuple(f"{form.holes}: {note}" for note in notes)
-    else:
-        _check_listed(form, document, depth_needed=depth_needed)
-        holes = _holes(form, document, tool, T_base_part)
+    holes, notes, said = holes_of(form, document, folder, robot, tool, T_base_part, depth_needed=depth_needed)
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
-    return Job(robot, tool, tuple(holes.values()), settings, T_base_part, form.name or name, reference, notes)
-
-
-def _check_listed(form: JobFile, document: Document, *, depth_needed: bool) -> None:
-    """Refuse what is missing in a list of holes that stands in a job, and keys that are for a CSV alone."""
-    for key in ("columns", "unit", "decimal"):
-        if getattr(form, key) is not None:
-            what, accepted = "goes with a CSV file of holes", "holes: the path of a CSV file; or without this key"
-            raise InputError(what, where=document.where((key,)), accepted=accepted)
-    for n, hole in enumerate(form.holes):
-        assert isinstance(hole, HoleForm)
-        if depth_needed and hole.depth_mm is None and form.depth_mm is None:
-            accepted = HoleForm.model_fields["depth_mm"].description or ""
-            where = f"{document.where(('holes', n))}.depth_mm (hole {hole.id})"
-            raise InputError("is missing", where=where, accepted=accepted)
-
-
-def _holes(form: JobFile, document: Document, tool: Tool, T_base_part: Array) -> dict[str, Hole]:
-    """The holes that stand in a job, by their ids."""
-    holes: dict[str, Hole] = {}
-    meaning = meaning_of(form)
-    for n, listed in enumerate(form.holes):
-        assert isinstance(listed, HoleForm)
-        where = document.where(("holes", n))
-        if listed.id in holes:
-            raise InputError(f"the id '{listed.id}' is used twice", where=where, accepted="ids that differ")
-        with inside(where):
-            hole = as_in_a_job(listed, meaning)
-            holes[hole.id] = hole_from(hole, form.psi_reference, tool, T_base_part)
-    return holes
-
-
-def _table(
-    form: JobFile, document: Document, folder: Path | None, tool: Tool, T_base_part: Array, *, depth_needed: bool
-) -> tuple[dict[str, Hole], tuple[str, ...]]:
-    """The holes of a job's CSV, by their ids, and what was left out of it."""
-    assert isinstance(form.holes, str)
-    if folder is None:
-        accepted = "a list of holes in the job itself"
-        raise InputError("another file is not opened from here", where=document.where(("holes",)), accepted=accepted)
-    path = folder / form.holes
-    with inside(document.where(("holes",))):
-        content = read_bytes(path, "a CSV file of holes, or a list of holes")
-    with inside(str(path)):
-        text = text_of_list(content)
-        listed = read_hole_list(text, given_of(form), meaning_of(form), depth_needed=depth_needed)
-        rows = all_of(in_base_frame(listed, form.psi_reference, tool, T_base_part))
-    return {row.hole.id: row.hole for row in rows if row.hole is not None}, listed.notes
+    return Job(robot, tool, holes, settings, T_base_part, form.name or name, reference, notes, said)

@@ -7,8 +7,10 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from zerorev.files.cad.as_listed import is_cad
 from zerorev.files.hole_list import given_of, read_hole_list, text_of_list
 from zerorev.files.hole_meaning import meaning_of
+from zerorev.files.io import read_cad_holes
 from zerorev.files.output import check_file, write_text
 from zerorev.files.schema import JobFile
 from zerorev.files.text import read_bytes, read_text
@@ -18,7 +20,7 @@ from zerorev.model._arrays import Array, rpy_of
 
 __all__ = ["frame_text", "write_job"]
 
-OF_A_CSV = ("columns", "unit", "decimal", "normals", "point", "depth_mm", "breakthrough_mm")
+OF_A_FILE = ("select", "columns", "unit", "decimal", "normals", "point", "depth_mm", "breakthrough_mm")
 
 
 def frame_text(T_base_part: Array) -> dict[str, list[float]]:
@@ -48,6 +50,8 @@ def write_job(
     check_file(target, source)
     data: dict[str, Any] = dict(yaml_document(read_text(source, "a job file (YAML)"), str(source)).data)
     data.setdefault("name", source.stem)
+    if isinstance(data["holes"], str) and is_cad(data["holes"]):  # their sides may depend on where the part stood
+        data["holes"] = _of_cad(data, source)
     if ids is not None:
         holes = _listed(data, source.parent) if isinstance(data["holes"], str) else data["holes"]
         data["holes"] = [hole for hole in holes if str(hole["id"]) in ids]
@@ -63,11 +67,19 @@ def write_job(
     write_text(target, head + yaml_text(data))
 
 
+def _of_cad(data: dict[str, Any], source: Path) -> list[dict[str, Any]]:
+    """The same of a job's CAD file."""
+    forms = read_cad_holes(source).forms
+    for key in OF_A_FILE:
+        data.pop(key, None)
+    return [form.model_dump(exclude_none=True) for form in forms]
+
+
 def _listed(data: dict[str, Any], folder: Path) -> list[dict[str, Any]]:
     """The holes of a job's CSV as a list has them; what the job says of the CSV is done, and taken out of it."""
     form = JobFile.model_validate(data)
     text = text_of_list(read_bytes(folder / data["holes"], "a CSV file of holes"))
     listed = read_hole_list(text, given_of(form), meaning_of(form), depth_needed=False)
-    for key in OF_A_CSV:
+    for key in OF_A_FILE:
         data.pop(key, None)
     return [row.form.model_dump(exclude_none=True) for row in listed.rows if row.form is not None]

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
+from zerorev.files.cad.select_form import SelectForm
 from zerorev.files.kuka_frames import with_direction
 from zerorev.files.robot_schema import GivenFrameForm, GivenToolForm
 from zerorev.files.stated_forms import Form, keys_of, kind
@@ -203,7 +204,12 @@ class JobFile(SettingsForm):
         Discriminator(kind),
     ] = Field(
         description="a list of one hole or more, or the path of a CSV file with the columns "
-        "id,x_mm,y_mm,z_mm,i,j,k,depth_mm"
+        "id,x_mm,y_mm,z_mm,i,j,k,depth_mm, or of a STEP or DXF file (.step, .stp, .dxf)"
+    )
+    select: SelectForm | None = Field(
+        default=None,
+        description="a mapping of id, kind, diameter_mm, solid, face_mm, layers, side: which holes of a CAD file are "
+        "drilled, and from where; left out: all",
     )
     depth_mm: Depth | None = Field(
         default=None, description="a number above 0 [mm]: the stroke of each hole that has none of its own"
@@ -220,7 +226,9 @@ class JobFile(SettingsForm):
         "the bottom is then depth_mm further along the direction",
     )
     breakthrough_mm: Annotated[Length, Field(ge=0)] = Field(
-        default=0.0, description="a number, 0 or more [mm]: how far the tip runs beyond the bottom of each hole"
+        default=0.0,
+        description="a number, 0 or more [mm]: how far the tip runs beyond the bottom of each hole, but of those that "
+        "are blind in a STEP file",
     )
     feed_mm_rev: Annotated[Length, Field(gt=0)] | None = Field(
         default=None,
@@ -236,7 +244,8 @@ class JobFile(SettingsForm):
     )
     unit: Literal["mm", "m", "in"] | None = Field(
         default=None,
-        description="mm, m or in: of the lengths in a CSV file, but for columns whose name says mm; left out: mm",
+        description="mm, m or in: of the lengths in a CSV file, but for columns whose name says mm; left out: mm. Of "
+        "a CAD file in place of the unit that it states",
     )
     decimal: Literal["point", "comma"] | None = Field(
         default=None, description="point or comma: the decimal sign in a CSV file; left out, it is found"

@@ -17,6 +17,7 @@ FindingKind = Literal[
     "base_column",
     "blend",
     "blend_clipped",
+    "cad",
     "calls",
     "certificate",
     "channels",

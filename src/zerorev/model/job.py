@@ -9,6 +9,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
 from zerorev.model.corner import controller_of
+from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.measures import CRITERIA
 from zerorev.model.robot import Robot
@@ -48,6 +49,7 @@ class Job:
         psi_reference: what the spins of all holes are counted from where the part is moved: one of
             `zerorev.model.hole.REFERENCES`, or a vector in the part frame; None: their own `psi_zero` moves with it.
         notes: what was left out where the files of the job were read, in words.
+        said: what was assumed there, and what is probably wrong with them.
     """
 
     robot: Robot
@@ -58,6 +60,7 @@ class Job:
     name: str = "job"
     psi_reference: str | tuple[float, ...] | None = None
     notes: tuple[str, ...] = field(default=(), compare=False)
+    said: tuple[Finding, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
         """Check the holes, that their ids differ, and name the controller."""

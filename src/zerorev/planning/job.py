@@ -64,7 +64,7 @@ def plan_job(
 
 def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> Plan:
     """The plan of a job but for its holes, or with these."""
-    findings = (*lever_findings(job.robot, job.tool), *likely_mistakes(job))
+    findings = (*lever_findings(job.robot, job.tool), *likely_mistakes(job), *job.said)
     return Plan(job.robot, job.tool, job.settings, holes, job.T_base_part, job.name, findings, strokes)
 
 

@@ -143,7 +143,7 @@ def _sequence_differs(stated: Plan, least: float) -> Iterator[str]:
     allowed = (1 + stated.settings.posture_freedom) * least
     if travel > allowed * (1 + BETTER):
         yield differ("travel_deg of all holes", float(np.rad2deg(travel)), float(np.rad2deg(allowed)))
-    said, found = _but(stated.findings, "unfinished", *GUESSES), lever_findings(stated.robot, stated.tool)
+    said, found = _but(stated.findings, "unfinished", "cad", *GUESSES), lever_findings(stated.robot, stated.tool)
     if not stated.order:  # it has no moves to say anything of
         yield from findings_differ(_but(said, "tool_turn"), found)
         return

@@ -152,7 +152,7 @@ def opened_job(job: Job) -> State:
 
 def caution_of(job: Job) -> str | None:
     """What is probably wrong with a job, and what was left out of its files, one per line; None where nothing is."""
-    return "\n".join((*(finding.message for finding in likely_mistakes(job)), *job.notes)) or None
+    return "\n".join((*(finding.message for finding in (*likely_mistakes(job), *job.said)), *job.notes)) or None
 
 
 def opened_plan(plan: Plan) -> State:

@@ -32,6 +32,7 @@ def moved(shape, move):
     return BRepBuilderAPI_Transform(shape, move, True).Shape()
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("unit", ["MM", "INCH", "M"])
 def test_a_plate_with_a_hole(plate, unit, tmp_path):
     vertices, faces = triangles(written(plate, tmp_path / "plate.step", unit), 1e-5)
@@ -46,6 +47,7 @@ def test_a_plate_with_a_hole(plate, unit, tmp_path):
     assert wall.sum() >= 2 * np.pi / (2 * np.arccos(1 - 0.01 / 8))
 
 
+@pytest.mark.usefixtures("here")
 def test_a_part_that_is_moved_or_mirrored_keeps_its_normals(plate, tmp_path):
     turn, mirror = gp_Trsf(), gp_Trsf()
     turn.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(1, 1, 1)), 1.0)
@@ -56,6 +58,7 @@ def test_a_part_that_is_moved_or_mirrored_keeps_its_normals(plate, tmp_path):
         assert 0 < volume(*found) * 1e9 - EXACT < 2 * np.pi * 8 * 20 * 0.01
 
 
+@pytest.mark.usefixtures("here")
 def test_a_finer_deflection_comes_nearer(plate, tmp_path):
     path = written(plate, tmp_path / "plate.step")
     coarse, fine = (volume(*triangles(path, deflection)) * 1e9 - EXACT for deflection in (1e-3, 1e-6))
