@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import weakref
 from dataclasses import replace
 from pathlib import Path
 
@@ -45,7 +47,7 @@ def picture(monkeypatch, name, view):
 def shown(monkeypatch):
     """Run edits with the page of a state on it: ids of its parts after each of them, and what was to be planned."""
     planned = []
-    monkeypatch.setattr(page, "plan_selected", lambda work: planned.append(work))
+    monkeypatch.setattr(page, "plan_selected", lambda _: planned.append("a hole"))
     monkeypatch.setattr(Client, "run_javascript", lambda *_, **__: NullResponse())
     for name in ("twist-map", "cell"):  # their own tests answer for what they do once they are there
         picture(monkeypatch, name, lambda _, name=name: ui.element().props(f"data-testid={name}"))
@@ -90,6 +92,14 @@ def test_a_job_has_all_of_its_parts_and_its_first_hole_is_planned(shown):
     } <= parts
     assert "demo" not in parts
     assert planned == 1
+
+
+@pytest.mark.parametrize("state", [State(), demo()])
+def test_a_page_that_is_left_leaves_nothing_of_its_session(shown, state):
+    """Nothing keeps it but what keeps the tabs (`zerorev.web.pages`): no route, no task, no view."""
+    left = [weakref.ref(shown(state, lambda _: ui.context.client.delete())[0]) for _ in range(3)]
+    gc.collect()
+    assert [ref() for ref in left] == [None] * 3
 
 
 @pytest.mark.parametrize("known", [True, False])

@@ -17,6 +17,8 @@ __all__ = ["file_picker", "open_button", "open_demo", "pick_file"]
 
 KINDS = ".yaml,.yml,.json"
 
+Opened = Callable[[events.UploadEventArguments], Awaitable[None]]
+
 
 def open_button(session: Session, name: str, look: str) -> None:
     """A button that opens a job or a plan file, or the demo.
@@ -58,7 +60,7 @@ def pick_file(session: Session, button: ui.element) -> None:
 
 def file_picker(
     button: ui.element,
-    opened: Callable[[events.UploadEventArguments], Awaitable[None]],
+    opened: Opened,
     kinds: str,
     refused: Callable[[str], object],
     largest: int = MAX_BYTES,
@@ -72,11 +74,32 @@ def file_picker(
         refused: called with the reason why a file was not taken.
         largest: size of a file [bytes].
     """
-    upload = ui.upload(on_upload=opened, auto_upload=True, max_file_size=largest).classes("zr-hidden")
+    upload = _Upload(opened, largest).classes("zr-hidden")
     upload.props(f'accept="{kinds}" aria-hidden="true"')
-    upload.on_upload(upload.reset)
     upload.on_rejected(lambda: refused(f"not taken (accepted: a file {kinds} of at most {largest // 2**20} MiB)"))
     button.on("click", js_handler=f"() => getElement({upload.id}).$refs.qRef.pickFiles()")
+
+
+class _Upload(ui.upload):
+    """Takes one file at a time, and forgets who wanted it when its page is left.
+
+    Each upload is a route of its own, and FastAPI keeps the functions of the last 4,096 routes that it has seen, also
+    of those that were removed (the caches of `fastapi.dependencies.models`). Without this, each would keep the session
+    of its page, with all of its holes and answers.
+    """
+
+    def __init__(self, opened: Opened, largest: int) -> None:
+        self._opened: Opened | None = opened
+        super().__init__(on_upload=self._hand_on, auto_upload=True, max_file_size=largest)
+
+    async def _hand_on(self, event: events.UploadEventArguments) -> None:
+        self.reset()
+        if self._opened is not None:
+            await self._opened(event)
+
+    def _handle_delete(self) -> None:
+        self._opened = None
+        super()._handle_delete()
 
 
 def open_demo(session: Session) -> None:
