@@ -58,6 +58,15 @@ class TestStraightLegs:
         """Of hole 36 the deepest stroke was once half of what it is, of 20,098 the travel a fifth more."""
         check_size(some_hole(seed), factor, 1e-5)
 
+    @pytest.mark.parametrize(("seed", "depth"), [(20_412, 79.547e-3), (20_494, 2.0595e-3)])
+    @pytest.mark.parametrize("factor", [0.02, 0.7, 5.0])
+    def test_the_deepest_stroke_is(self, seed, depth, factor):
+        """At least so deep [m]; it was 0.6 % less at some sizes next to a singularity, and half on flat ground."""
+        drilled = some_hole(seed)
+        mine, theirs = deepest_stroke(*drilled.all).depth, deepest_stroke(*scaled(drilled, factor).all).depth
+        assert mine > depth
+        assert theirs / factor == pytest.approx(mine, rel=WORTH_RAISING)
+
     @pytest.mark.long
     def test_more_plans_are(self):
         for seed in range(40, 52):

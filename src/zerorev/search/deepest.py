@@ -38,6 +38,7 @@ SHALLOWEST = 1e-4  # of the stretched arm's length: a stroke that is none
 SAMPLES = 9  # points of a leg
 WORTH_RAISING = 1e-4  # relative
 ROUGH, ENOUGH = 1e-6, 1e-7  # relative: a smaller gain does not count
+DESCENTS = 10  # from the end of a valley, at most
 ENOUGH_LACK = 1e-6  # [rad/m]
 SHORTER = 0.4  # of the legs of a start
 SPARE = 1e-3 * LEAST_RATE  # kept to the threshold, for rounding
@@ -285,8 +286,10 @@ class _Search:
     def _settled(self, end: _End) -> Deepest | None:
         """The deepest stroke of a valley whose motion, followed closely, has no reversal."""
         rules = self.rules._replace(min_rate=self.min_rate + SPARE)
-        for samples, shares in CLOSER:
-            deepest, _ = self._go(end.branch, end.sense, rules, end.legs, "depth", samples, weighed=True)
+        for stage, (samples, shares) in enumerate(CLOSER):
+            deepest = self._deepest_legs(end, rules, samples)
+            if stage:  # next to a singularity what is weighed seems to be missing less than it is
+                deepest, _ = self._go(end.branch, end.sense, rules, deepest, "depth", samples)
             for kept_back in shares:
                 room = _shortened(deepest, 1 - kept_back)
                 room, _ = self._go(end.branch, end.sense, rules, room, "margin", samples)
@@ -295,6 +298,16 @@ class _Search:
                 if score is not None and score.reversals == 0 and score.min_rate.min() >= self.min_rate:
                     return Deepest(room.depth, profile, end.branch)
         return None
+
+    def _deepest_legs(self, end: _End, rules: Constraints, samples: int) -> SegmentedLegs:
+        """The legs of a valley's end as deep as they go, closely examined; on flat ground one descent ends too soon."""
+        legs = end.legs
+        for _ in range(DESCENTS):
+            before = legs.depth
+            legs, _ = self._go(end.branch, end.sense, rules, legs, "depth", samples, weighed=True)
+            if legs.depth <= before * (1 + WORTH_RAISING):
+                break
+        return legs
 
 
 def _shortened(legs: SegmentedLegs, share: float) -> SegmentedLegs:
