@@ -36,9 +36,9 @@ def test_an_answer_recolours_the_hole_and_builds_none_again(page):
     page.get_by_test_id("hole-next").click()
     until(page, f"{CELL}.holes.reversals[1] === 0")
     assert page.evaluate(f"{CELL}.holes === window.holes")
-    colour = f"[...{CELL}.holes.bodies[0].instanceColor.array]"
-    assert page.evaluate(f"{colour}.slice(0, 3).join() === {colour}.slice(3, 6).join()")
-    assert page.evaluate(f"{colour}.slice(3, 6).join() !== {colour}.slice(6, 9).join()")
+    first, second, third = (f"{CELL}.holes.bodies[0].colour({n}).getHex()" for n in range(3))
+    assert page.evaluate(f"{first} === {second}")
+    assert page.evaluate(f"{second} !== {third}")
     assert "0 reversals: 2 holes" in page.get_by_test_id("cell-legend").inner_text()
     page.get_by_test_id("hole-before").click()
     until(page, f"{CELL}.holes.selected === 0")

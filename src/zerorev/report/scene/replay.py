@@ -27,7 +27,16 @@ from zerorev.report.words.tables import hole_findings, slowest
 __all__ = ["MOST_HOLES", "replay_page"]
 
 STATIC = Path(__file__).parent / "static"
-MODULES = ("cell.js", "cell_arm.js", "cell_bar.js", "cell_hands.js", "cell_room.js", "cell_trace.js", "replay.js")
+MODULES = (
+    "cell.js",
+    "cell_arm.js",
+    "cell_bar.js",
+    "cell_copies.js",
+    "cell_hands.js",
+    "cell_room.js",
+    "cell_trace.js",
+    "replay.js",
+)
 MOST_HOLES = 2000
 POINTS, FEWEST_SAMPLES = 24_000, 24  # of all motions together, and of one
 

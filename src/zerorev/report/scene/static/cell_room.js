@@ -1,10 +1,11 @@
 // What stands around the arm: floor, frames, the part's faces, the holes, and the cells of a map.
 import { THREE } from "nicegui-scene";
+import { Copies } from "zerorev-cell/cell_copies.js";
 
 export const UNPLANNED = -1, INFEASIBLE = -2;
 const HOLE = 4.5, AXES = ["#c8442f", "#2f8f4e", "#2f62c8"], LETTERS = ["x", "y", "z"];
 const MANY = 200; // holes, of which each is so small that it need not be as round
-const CROWD = 2000; // holes, of which each is a spot: a machine without a graphics card draws them in each frame, too
+const CROWD = 1000; // holes, of which each is a spot: a machine without a graphics card draws them in each frame, too
 
 export function floats(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -87,6 +88,13 @@ export function matrix(rows) {
   return new THREE.Matrix4().set(...rows[0], ...rows[1], ...rows[2], 0, 0, 0, 1);
 }
 
+// a hexagon of four triangles; a circle has two more, around its centre
+function spot(radius) {
+  const circle = new THREE.CircleGeometry(radius, 6).rotateX(Math.PI / 2);
+  circle.setIndex([1, 2, 3, 1, 3, 4, 1, 4, 5, 1, 5, 6]);
+  return circle;
+}
+
 export class Holes {
   // data: what report/cell_data.holes_data makes
   constructor(data, colours, ink) {
@@ -129,10 +137,7 @@ export class Holes {
   know(reversals) {
     this.reversals = reversals;
     const colour = new THREE.Color();
-    for (const mesh of this.bodies) {
-      reversals.forEach((count, i) => mesh.setColorAt(i, colour.set(this.colour(count))));
-      mesh.instanceColor.needsUpdate = true;
-    }
+    for (const mesh of this.bodies) mesh.paint((i) => colour.set(this.colour(reversals[i])));
     free(this.crosses);
     this._crosses();
   }
@@ -175,8 +180,7 @@ export class Holes {
 
   // of each hole, which geometries, whether they reach down to its bottom, and their looks
   _parts(count) {
-    const spot = () => new THREE.CircleGeometry(1.5 * HOLE, 6).rotateX(Math.PI / 2);
-    if (count > CROWD) return [[spot(), false, { side: THREE.DoubleSide }]];
+    if (count > CROWD) return [[spot(1.5 * HOLE), false, { side: THREE.DoubleSide }]];
     const [wall, rim, round] = count > MANY ? [8, 12, 4] : [16, 24, 8];
     const parts = [
       [new THREE.CylinderGeometry(HOLE, HOLE, 1, wall, 1, true).translate(0, -0.5, 0), true, { side: THREE.BackSide }],
@@ -193,33 +197,28 @@ export class Holes {
   _bodies() {
     const count = this.ids.length, parts = this._parts(count);
     const [place, turn, size, way] = [new THREE.Vector3(), new THREE.Quaternion(), new THREE.Vector3(), new THREE.Vector3()];
-    const to = new THREE.Matrix4();
-    return parts.map(([geometry, stretched, look]) => {
-      const mesh = new THREE.InstancedMesh(geometry, new THREE.MeshLambertMaterial(look), count);
-      for (let i = 0; i < count; i++) {
-        this.at(i, this.depth[i], place);
-        turn.setFromUnitVectors(new THREE.Vector3(0, -1, 0), this.way(i, way));
-        size.set(1, stretched ? this.depth[i] : 1, 1);
-        mesh.setMatrixAt(i, to.compose(place, turn, size));
-      }
-      mesh.frustumCulled = false;
-      return mesh;
-    });
+    const from = new THREE.Vector3(0, -1, 0);
+    return parts.map(([shape, stretched, look]) => new Copies(shape, new THREE.MeshLambertMaterial(look), count, (i, to) => {
+      this.at(i, this.depth[i], place);
+      turn.setFromUnitVectors(from, this.way(i, way));
+      to.compose(place, turn, size.set(1, stretched ? this.depth[i] : 1, 1));
+    }));
   }
 
   // an infeasible hole has a cross over its mouth
   _crosses() {
     const lost = this.ids.map((_, i) => i).filter((i) => this.reversals[i] === INFEASIBLE);
     if (!lost.length) return;
-    const mesh = new THREE.InstancedMesh(
-      new THREE.BoxGeometry(4.4 * HOLE, 0.4 * HOLE, 0.4 * HOLE), new THREE.MeshBasicMaterial({ color: "#a32020" }), 2 * lost.length);
-    const [place, way, to] = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Matrix4()];
-    lost.forEach((i, n) => [1, -1].forEach((side, k) => {
-      const turn = new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 0, -1), this.way(i, way));
-      turn.multiply(new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), (side * Math.PI) / 4));
-      mesh.setMatrixAt(2 * n + k, to.compose(this.at(i, this.depth[i], place), turn, new THREE.Vector3(1, 1, 1)));
-    }));
-    this.crosses.add(mesh);
+    const [place, way, size] = [new THREE.Vector3(), new THREE.Vector3(), new THREE.Vector3(1, 1, 1)];
+    const [from, turn] = [new THREE.Vector3(0, 0, -1), new THREE.Quaternion()];
+    const sides = [1, -1].map((side) => new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), (side * Math.PI) / 4));
+    this.crosses.add(new Copies(
+      new THREE.BoxGeometry(4.4 * HOLE, 0.4 * HOLE, 0.4 * HOLE), new THREE.MeshBasicMaterial({ color: "#a32020" }), 2 * lost.length,
+      (n, to) => {
+        const i = lost[n >> 1];
+        turn.setFromUnitVectors(from, this.way(i, way)).multiply(sides[n % 2]);
+        to.compose(this.at(i, this.depth[i], place), turn, size);
+      }));
   }
 }
 
@@ -232,15 +231,11 @@ export class Slice {
     const rgb = bytes(data.rgb), [u, v] = data.edges_mm.map((edge) => new THREE.Vector3(...edge));
     const across = u.clone().cross(v).normalize(), count = this.words.length;
     const turned = new THREE.Matrix4().makeBasis(u.clone().multiplyScalar(0.9), v.clone().multiplyScalar(0.9), across);
-    const mesh = new THREE.InstancedMesh(
-      new THREE.BoxGeometry(1, 1, 2),
-      new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.82, side: THREE.DoubleSide }), count);
+    const mesh = new Copies(
+      new THREE.BoxGeometry(1, 1, 2), new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.82, side: THREE.DoubleSide }),
+      count, (i, to) => to.copy(turned).setPosition(...this.position.subarray(3 * i, 3 * i + 3)));
     const colour = new THREE.Color();
-    for (let i = 0; i < count; i++) {
-      mesh.setMatrixAt(i, turned.setPosition(...this.position.subarray(3 * i, 3 * i + 3)));
-      mesh.setColorAt(i, colour.setRGB(rgb[3 * i] / 255, rgb[3 * i + 1] / 255, rgb[3 * i + 2] / 255, THREE.SRGBColorSpace));
-    }
-    mesh.frustumCulled = false;
+    mesh.paint((i) => colour.setRGB(rgb[3 * i] / 255, rgb[3 * i + 1] / 255, rgb[3 * i + 2] / 255, THREE.SRGBColorSpace));
     mesh.renderOrder = 1;
     this.root = new THREE.Group().add(mesh);
     this.radius = Math.max(u.length(), v.length()) / 2;
