@@ -12,6 +12,7 @@ from zerorev.maps.cells import STATUS, answer, columns_of
 from zerorev.maps.replan import hole_of, job_of, question_of
 from zerorev.maps.run import run_map
 from zerorev.maps.workspace import read_workspace_map
+from zerorev.model.cycle import Cycle
 from zerorev.model.job import Settings
 from zerorev.model.map_task import MapTask, Question, cone
 from zerorev.motion.critical import critical_at
@@ -88,6 +89,33 @@ def test_at_a_given_depth_a_cell_is_what_plan_says(quantity, objective, legs, ro
         again = plan(robot, tool, hole_of(found, **at), settings.without_proof).score
         assert again.reversals == alone.reversals
         assert again.travel == pytest.approx(alone.travel)
+
+
+@pytest.mark.parametrize("quantity", ["deepest", "fewest_reversals", "least_travel"])
+def test_cells_of_holes_that_break_chips_are_replanned_and_verified(quantity, robot, tool, tmp_path):
+    """The motion of a cell comes back from the map with its breaks, and is what the map says of it."""
+    settings = replace(FREE, legs="straight", cycle=Cycle("chip_break", 5e-3, 0.3e-3))
+    question = Question(robot, tool, quantity, settings, depth=None if quantity == "deepest" else 0.03)
+    found = mapped(question, tmp_path)
+    assert question_of(found) == question
+    for at in cells(found):
+        hole = hole_of(found, **at)
+        assert len(hole.profile.turns) == 1 + 2 * len(settings.cycle.breaks(hole.depth))
+        answer = plan(robot, tool, hole, settings)
+        assert answer.verified.passed
+        assert answer.score.reversals == 0
+        if quantity == "deepest":
+            assert float(found["deepest_mm"].isel(at)) == hole.depth * 1e3 <= answer.deepest * 1e3
+        elif quantity == "least_travel":
+            assert float(found["travel_deg"].isel(at)) == pytest.approx(np.rad2deg(answer.score.travel), abs=1e-6)
+
+
+def test_a_question_that_knows_no_cycle_is_refused(robot, tool):
+    chips, pecks = Cycle("chip_break", 5e-3), Cycle("peck", 5e-3)
+    with pytest.raises(InputError, match="cycle, kind: chip_break"):
+        Question(robot, tool, "twist_spread", replace(FREE, legs="straight", cycle=chips))
+    with pytest.raises(InputError, match="cycle, kind: peck"):
+        Question(robot, tool, "least_travel", replace(FREE, cycle=pecks), depth=0.03)
 
 
 def test_a_depth_too_deep_for_zero_reversals_has_no_travel_but_reversals(robot, tool, tmp_path):

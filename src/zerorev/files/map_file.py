@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.conversion import tool_from
+from zerorev.files.conversion import cycle_from, tool_from
 from zerorev.files.io import read_robot, read_tool
 from zerorev.files.map_schema import MOST_CELLS, ConesForm, MapFile, RangeForm, SphereForm
 from zerorev.files.stated_forms import noun_from
@@ -58,7 +58,7 @@ def _question(form: MapFile, document: Document, folder: Path) -> Question:
     if form.seed is not None and not quantity(form.quantity).seeded:
         accepted = f"for {in_words(lambda each: each.seeded, 'and')} alone"
         raise InputError(f"is not used by {form.quantity}", where="seed", accepted=accepted)
-    settings = noun_from(Settings, form, SETTINGS)
+    settings = noun_from(Settings, form, SETTINGS, cycle=cycle_from(form.cycle))
     depth = None if form.depth_mm is None else float(m(form.depth_mm))
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
     return Question(robot, tool, form.quantity, settings, reference, depth, form.seed or 0)

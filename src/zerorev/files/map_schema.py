@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import ConfigDict, Discriminator, Field, Tag
 
 from zerorev.files.robot_schema import ToolForm
+from zerorev.files.schema import CycleForm
 from zerorev.files.stated_forms import Form, keys_of, kind
 from zerorev.files.values import Depth, Length, Name, Three
 from zerorev.model.map_task import SETTINGS
@@ -87,6 +88,12 @@ def _directions(value: object) -> str | None:
 @keys_of(Settings, SETTINGS)
 class MapSettingsForm(Form):
     """The settings that a map heeds."""
+
+    cycle: CycleForm = Field(
+        default=CycleForm(),
+        description="a mapping of kind, depth_mm and back_mm: how the holes are drilled; a deepest stroke that breaks "
+        "chips is the deepest that is found, not proven to be so",
+    )
 
 
 class MapFile(MapSettingsForm):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["BoundRules", "Constraints", "TwistPlane"]
+__all__ = ["BoundRules", "Breaking", "Constraints", "TwistPlane"]
 
 Array = npt.NDArray[np.float64]
 LONGEST_TWIST = 2 * np.pi  # [rad] of one leg
@@ -88,3 +88,36 @@ class BoundRules(NamedTuple):
     least_weight: float
     samples: int
     aspect: float = 1.0
+
+
+class Breaking(NamedTuple):
+    """How chips are broken on the way in, and what the joints keep meanwhile.
+
+    Attributes:
+        corner: stand-off of the corner [m].
+        peck: from one break to the next [m].
+        back: by which the tool draws back [m].
+        nearest: no break lies further in [m].
+        least: rate of any joint [rad/m].
+        least_back: likewise of the way back, where there is a choice.
+        steepest: twist rate of a way back [rad/m].
+        lead: length of a lead-in in which no joint may turn round [m]; 0: none.
+        evenly: whether the breaks are spread evenly over the depth, and draw back by as much in sum as they would one
+            each peck: a motion that changes smoothly with its depth, whose number of breaks does not matter.
+        psi_bound: spins within +- this [rad]; 0: periodic.
+        lower: limits of the joints [rad], shape (6,), finite.
+        upper: likewise.
+    """
+
+    corner: float
+    peck: float
+    back: float
+    nearest: float
+    least: float
+    least_back: float
+    steepest: float
+    lead: float
+    evenly: bool
+    psi_bound: float
+    lower: Array
+    upper: Array

@@ -262,10 +262,15 @@ def _follow(arm, plane, branch, side, standoff, psi, first, moved):  # type: ign
         else:
             for i in range(6):
                 way = side[i] * (flip_sign(arm, branch) if i == 4 else 1.0)
-                step = way * (here[i] - before[i])
-                moved[i] += way * (step - 2.0 * np.pi * np.floor((step + WRONG_WAY) / (2.0 * np.pi)))
+                moved[i] += way * onwards(way * (here[i] - before[i]))
         before[:] = here
     return True
+
+
+@lean
+def onwards(step):  # type: ignore[no-untyped-def]
+    """By how much a joint goes on in the direction that it should have, given that up to full turns [rad]."""
+    return step - 2.0 * np.pi * np.floor((step + WRONG_WAY) / (2.0 * np.pi))
 
 
 @lean

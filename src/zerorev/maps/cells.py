@@ -13,6 +13,7 @@ from zerorev.model.map_task import Question
 from zerorev.model.quantity import Found, quantity
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import turns_within
+from zerorev.search.broken_legs import Numbers
 from zerorev.search.free_deepest import SEGMENTS
 from zerorev.search.straight import target_spins
 
@@ -61,6 +62,8 @@ def columns_of(question: Question) -> dict[str, tuple[str, str, str]]:
     if question.settings.legs == "free":
         columns |= {"standoff_mm": ("f8", "mm", "stand-off at the breakpoints of the motion"),
                     "psi_deg": ("f8", "deg", "spin at the breakpoints of the motion")}  # fmt: skip
+    if question.settings.cycle.kind == "chip_break":
+        columns["plunge_deg_per_mm"] = ("f8", "deg/mm", "slope of the plunge, from which its breaks follow")
     return columns
 
 
@@ -95,6 +98,8 @@ def _write(values: Values, n: int, variable: str, found: Found) -> None:
     values["psi_target_deg"][n] = np.rad2deg(found.psi_target)
     if found.profile is not None:
         values["psi_start_deg"][n], values["psi_end_deg"][n] = np.rad2deg(found.profile.psi[[0, -1]])
+        if "plunge_deg_per_mm" in values:
+            values["plunge_deg_per_mm"][n] = np.rad2deg(Numbers.of(found.profile).plunge) / 1e3
         if "psi_deg" in values:
             knots = len(found.profile.psi)
             values["standoff_mm"][n, :knots] = found.profile.standoff * 1e3

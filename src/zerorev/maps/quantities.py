@@ -11,7 +11,7 @@ from zerorev.model.map_task import Question
 from zerorev.model.profile import Profile
 from zerorev.model.quantity import Found, Quantity
 from zerorev.motion.drilling import Drilling
-from zerorev.search.optimum import best_motion, deepest_as_drilled
+from zerorev.search.cycles import best_in_cycle, deepest_in_cycle
 from zerorev.search.prediction import narrowest
 from zerorev.search.rank import Candidate
 
@@ -32,7 +32,7 @@ def stroke_found(depth: float, profile: Profile | None, branch: int | None) -> F
 
 
 def _deepest(question: Question, hole: Hole, _: int) -> Found | None:
-    found = deepest_as_drilled(Drilling.of(question, hole), question.settings.without_proof)
+    found = deepest_in_cycle(Drilling.of(question, hole), question.settings.without_proof)
     return stroke_found(found.depth, found.profile, found.branch)
 
 
@@ -64,7 +64,7 @@ def _twist_spread(question: Question, hole: Hole, _: int) -> Found | None:
 
 
 def _best_motion(question: Question, hole: Hole) -> Candidate | None:
-    return best_motion(Drilling.of(question, hole), question.settings.without_proof)
+    return best_in_cycle(Drilling.of(question, hole), question.settings.without_proof)
 
 
 def _motion(value: float, best: Candidate) -> Found:
@@ -120,6 +120,7 @@ QUANTITIES = (
         digits=3,
         more_is_better=False,
         free_legs=False,
+        cycles=False,
         solve=_twist_spread,
     ),
 )

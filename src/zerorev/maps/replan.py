@@ -8,16 +8,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from zerorev.errors import InputError
-from zerorev.files.conversion import robot_from, tool_from
+from zerorev.files.conversion import cycle_from, robot_from, tool_from
 from zerorev.files.map_schema import MapSettingsForm
 from zerorev.files.robot_schema import RobotForm, ToolForm
 from zerorev.files.stated_forms import noun_from
-from zerorev.files.units import m, rad
+from zerorev.files.units import m, rad, rad_per_m
 from zerorev.maps.frames import frame_of
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.map_task import SETTINGS, Question
 from zerorev.model.profile import Profile
+from zerorev.motion.drilling import Drilling
+from zerorev.search.broken_legs import BrokenLegs, Numbers
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -40,11 +42,12 @@ def question_of(found: Dataset) -> Question:
         reference, depth_mm = attributes["psi_reference"], attributes.get("depth_mm")
         for data in (robot, tool):
             data.pop("sha256")
+        chosen = MapSettingsForm.model_validate(settings)
         return Question(
             robot_from(RobotForm.model_validate(robot)),
             tool_from(ToolForm.model_validate(tool)),
             attributes["quantity"],
-            noun_from(Settings, MapSettingsForm.model_validate(settings), SETTINGS),
+            noun_from(Settings, chosen, SETTINGS, cycle=cycle_from(chosen.cycle)),
             reference if isinstance(reference, str) else tuple(reference),
             None if depth_mm is None else float(m(depth_mm)),
             attributes.get("seed", 0),
@@ -103,19 +106,32 @@ def _hole(question: Question, found: Dataset, index: dict[str, int]) -> Hole:
     T = frame_of(found)
     target, direction = m(target) @ T[:3, :3].T + T[:3, 3], direction @ T[:3, :3].T
     name = "cell " + " ".join(f"{key}{at}" for key, at in full.items())
-    profile, branch = _profile(cell, question), int(cell["branch"])
-    depth = None if profile is None else float(profile.standoff[0])
+    branch = int(cell["branch"])
+    depth = _depth(cell, question)
     hole = question.hole(target, direction, name, depth)
-    return replace(hole, profile=profile, branch=branch if branch >= 0 else None)
+    return replace(hole, profile=_profile(cell, question, hole), branch=branch if branch >= 0 else None)
 
 
-def _profile(cell: Any, question: Question) -> Profile | None:
-    spins = np.array([float(cell[f"psi_{place}_deg"]) for place in ("start", "target", "end")])
-    if np.isnan(spins).any():
+def _depth(cell: Any, question: Question) -> float | None:
+    """Of the motion of a cell [m]; None where it has none."""
+    if np.isnan([float(cell[f"psi_{place}_deg"]) for place in ("start", "target", "end")]).any():
         return None
+    if "psi_deg" in cell:
+        return float(m(cell["standoff_mm"].values[0]))
+    return float(m(cell["deepest_mm"])) if "deepest_mm" in cell else question.depth
+
+
+def _profile(cell: Any, question: Question, hole: Hole) -> Profile | None:
+    depth = _depth(cell, question)
+    if depth is None:
+        return None
+    spins = rad(np.array([float(cell[f"psi_{place}_deg"]) for place in ("start", "target", "end")]))
     if "psi_deg" in cell:
         known = ~np.isnan(cell["psi_deg"].values)
         return Profile(m(cell["standoff_mm"].values[known]), rad(cell["psi_deg"].values[known]))
-    depth = float(m(cell["deepest_mm"])) if "deepest_mm" in cell else question.depth
-    assert depth is not None
-    return Profile.straight(depth, *rad(spins).tolist())
+    if "plunge_deg_per_mm" in cell:
+        plunge = float(rad_per_m(cell["plunge_deg_per_mm"]))
+        numbers = Numbers(float(spins[1]), plunge, float(spins[2] - spins[1]) / depth, depth)
+        settings, branch = question.settings, int(cell["branch"])
+        return BrokenLegs.at(Drilling.of(question, hole), settings, branch, settings.cycle, depth).motion(numbers)
+    return Profile.straight(depth, *spins.tolist())

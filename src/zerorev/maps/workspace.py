@@ -26,6 +26,7 @@ from zerorev.maps.cells import KNOTS, STATUS, Values, columns_of
 from zerorev.maps.chunks import Chunks
 from zerorev.maps.replan import question_of
 from zerorev.maps.sound import MARK, check_grid, check_store
+from zerorev.model.cycle import Cycle
 from zerorev.model.map_task import SETTINGS, MapTask
 from zerorev.model.quantity import quantity
 from zerorev.model.settings import Settings
@@ -230,7 +231,7 @@ def _skeleton(task: MapTask) -> Dataset:
         "robot": robot_data(question.robot),
         "tool": tool_data(question.tool),
         "psi_reference": reference if isinstance(reference, str) else list(reference),
-        "settings": data_of(question.settings, SETTINGS),
+        "settings": data_of(question.settings, SETTINGS) | {"cycle": data_of(question.settings.cycle)},
     }
     if quantity(question.quantity).needs_depth:
         assert question.depth is not None
@@ -249,6 +250,7 @@ def _check_same(found: Dataset, wanted: Dataset, path: str) -> None:
     accepted = "the map of the same command, to continue with; or another folder"
     # a map of before a setting existed was made with its default
     usual = {f"settings.{each.path[0]}": default_of(each) for each in stated(Settings) if each.name in SETTINGS}
+    usual |= {f"settings.cycle.{each.path[0]}": default_of(each) for each in stated(Cycle)}
     there, here = usual | _flat(found.attrs), _flat(wanted.attrs)
     for key in sorted({*there, *here}):
         if there.get(key) != here.get(key):

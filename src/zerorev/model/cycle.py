@@ -85,6 +85,11 @@ class Cycle:
             parts.append(f"a dwell of {self.dwell:g} s at the target")
         return ", ".join(parts) or "in one go"
 
+    @property
+    def nearest(self) -> float:
+        """A break lies further out than this [m]: where the tool can draw back and has something left to drill."""
+        return self.back * 1.000001
+
     def breaks(self, depth: float) -> Array:
         """Stand-offs at which chips are broken in a stroke, falling [m], shape (n,).
 
@@ -100,7 +105,7 @@ class Cycle:
             return np.empty(0)
         self._check_count(depth)
         found = depth - self.depth * np.arange(1, MOST_PECKS + 1)
-        return np.asarray(found[found > self.back * 1.000001])
+        return np.asarray(found[found > self.nearest])
 
     def strokes(self, depth: float) -> tuple[float, ...]:
         """How deep each stroke of a hole goes, rising, the last one all the way [m].

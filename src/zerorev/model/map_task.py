@@ -19,7 +19,7 @@ from zerorev.model.tool import Tool
 __all__ = ["SETTINGS", "MapTask", "Question", "cone", "sphere"]
 
 SETTINGS = ("min_rate", "psi_bound", "legs", "max_twist", "limit_margin")
-"""Names of the settings that a map heeds."""
+"""Names of the settings that a map heeds; and `cycle`, which has a form of its own."""
 
 NOMINAL_DEPTH = 1e-3  # [m] of a hole whose depth is not examined
 GOLDEN_TURN = np.pi * (3 - np.sqrt(5))
@@ -34,7 +34,7 @@ class Question:
         robot: the arm.
         tool: the drill on its flange.
         quantity: which number is wanted (`model.quantity`).
-        settings: of which those named in `SETTINGS` count.
+        settings: of which those named in `SETTINGS`, and the cycle, count.
         psi_reference: `base_y`, `nearest_base`, or a vector in the base frame.
         depth: stroke [m] where the quantity needs one, else None.
         seed: of the swarm.
@@ -60,6 +60,10 @@ class Question:
         check_robot(self.robot, self.settings)
         if self.settings.legs == "free" and not wanted.free_legs:
             raise InputError("free", where="legs", accepted=f"straight: {self.quantity} knows no other")
+        kind = self.settings.cycle.kind
+        if (kind == "chip_break" and not wanted.cycles) or (kind == "peck" and wanted.needs_depth):
+            accepted = f"single: {self.quantity} knows no other" if kind == "chip_break" else "single, a map a stroke"
+            raise InputError(kind, where="cycle, kind", accepted=accepted)
 
     def hole(self, target: Array, direction: Array, name: str = "cell", depth: float | None = None) -> Hole:
         """The hole of a cell.

@@ -330,13 +330,20 @@ class HolePlan(Shown):
     deepest: Annotated[
         float | None,
         Figure(
-            "the deepest stroke without a reversal, 0: none", MM, least=0, null=None, none="not looked for", added=True
+            "the deepest stroke without a reversal as the hole is drilled, 0: none; where chips are broken the deepest "
+            "that was found, a lower bound that nothing proves",
+            MM,
+            least=0,
+            null=None,
+            none="not looked for",
+            added=True,
         ),
     ] = None
     deepest_at_most: Annotated[
         float | None,
         Figure(
-            "no stroke without a reversal is as deep, of straight or free legs as the settings say",
+            "no stroke without a reversal is as deep, of straight or free legs as the settings say; null where chips "
+            "are broken, for which neither bound holds",
             MM,
             least=0,
             null=None,

@@ -57,6 +57,7 @@ class Quantity:
         nothing: what a cell without an answer counts as beside one that has one; NaN: the two are not compared.
         needs_depth: whether it is asked at a depth.
         free_legs: whether legs may be free.
+        cycles: whether chips may be broken on the way.
         seeded: whether it depends on a seed.
         chunk: cells of a chunk, at most: some seconds of work.
         offered: whether the app offers it.
@@ -72,6 +73,7 @@ class Quantity:
     nothing: float = np.nan
     needs_depth: bool = False
     free_legs: bool = True
+    cycles: bool = True
     seeded: bool = False
     chunk: int = 256
     offered: bool = True

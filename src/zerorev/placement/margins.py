@@ -12,7 +12,7 @@ from zerorev.model._arrays import Array
 from zerorev.model.job import Job
 from zerorev.motion.drilling import Drilling
 from zerorev.placement.freedom import job_at
-from zerorev.search.optimum import deepest_as_drilled
+from zerorev.search.cycles import deepest_in_cycle
 from zerorev.workers import Workers
 
 __all__ = ["Look", "Margins", "least"]
@@ -82,7 +82,7 @@ class Asked:
         except InputError:  # the reference of the spin has no meaning there, so no job could stand there
             return np.array([-hole.depth for hole in self.job.holes])
         for k in look.order:
-            deepest = deepest_as_drilled(Drilling.of(moved, moved.holes[k]), moved.settings.without_proof)
+            deepest = deepest_in_cycle(Drilling.of(moved, moved.holes[k]), moved.settings.without_proof)
             margins[k] = deepest.depth - moved.holes[k].depth
             if margins[k] <= look.enough:
                 break

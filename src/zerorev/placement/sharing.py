@@ -16,7 +16,7 @@ from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
-from zerorev.search.optimum import deepest_as_drilled
+from zerorev.search.cycles import deepest_in_cycle
 from zerorev.workers import HERE, Machines, Workers
 
 __all__ = ["Shares", "assigned", "share"]
@@ -131,7 +131,7 @@ class _Depth:
     def __call__(self, asked: tuple[int, Hole]) -> float:
         robot, tool, settings = self.robots[asked[0]]
         drilling = Drilling(robot, tool, asked[1], settings.limit_margin)
-        return deepest_as_drilled(drilling, settings.without_proof).depth
+        return deepest_in_cycle(drilling, settings.without_proof).depth
 
 
 def _check_same(jobs: Sequence[Job]) -> None:

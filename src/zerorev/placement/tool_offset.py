@@ -19,7 +19,7 @@ from zerorev.model.job import Job, Settings
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
-from zerorev.search.optimum import deepest_as_drilled
+from zerorev.search.cycles import deepest_in_cycle
 
 __all__ = ["LeastOffset", "OffsetCurve", "least_offset", "offset_curve", "offset_of", "with_offset"]
 
@@ -134,7 +134,7 @@ def offset_curve(
         if progress:
             progress(done, deepest.size)
         moved = with_offset(robot, tool, float(e[i]), float(a[j]))
-        deepest[i, j, k] = deepest_as_drilled(
+        deepest[i, j, k] = deepest_in_cycle(
             Drilling(robot, moved, holes[k], settings.limit_margin), settings.without_proof
         ).depth
     if progress:

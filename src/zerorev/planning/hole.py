@@ -24,10 +24,10 @@ from zerorev.planning.answered import answered, motion_findings
 from zerorev.planning.pecks import pecked
 from zerorev.planning.why_none import why_none, why_too_short
 from zerorev.search.bounds.proof import MOST_REVERSALS
-from zerorev.search.chip_break import chip_breaking
 from zerorev.search.cut_short import cut_short
+from zerorev.search.cycles import chip_breaks, deepest_in_cycle, motions_that_break, raised, shallower
 from zerorev.search.deepest import Deepest
-from zerorev.search.optimum import alternatives, deepest_as_drilled, optimum, too_short
+from zerorev.search.optimum import alternatives, optimum, too_short
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.twins import gentlest_first
 
@@ -63,9 +63,9 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(why_too_short(robot, hole),))
     cycle = hole.drilled_by(settings.cycle)
     if hole.profile is None and cycle.kind == "chip_break":
-        return _chip_breaking(drilling, settings, cycle)
+        return _chip_breaking(drilling, settings, cycle, deepest_in_cycle(drilling, settings))
     if hole.profile is None and len(cycle.strokes(hole.depth)) > 1:
-        return _with_deepest(pecked(drilling, settings, cycle), settings, deepest_as_drilled(drilling, settings))
+        return _with_deepest(pecked(drilling, settings, cycle), settings, deepest_in_cycle(drilling, settings))
     if hole.profile is None:
         found = optimum(drilling, settings)
         best = () if found.motion is None else gentlest_first(drilling, settings, found.motion)
@@ -74,7 +74,7 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
             answer = _with_optimality(drilling, settings, answer, best, found.optimality)
         return _with_deepest(answer, settings, found.deepest)
     answer = _evaluated(drilling, settings, hole.profile)
-    return _with_deepest(answer, settings, deepest_as_drilled(drilling, settings))
+    return _with_deepest(answer, settings, deepest_in_cycle(drilling, settings))
 
 
 def evaluated_stroke(robot: Robot, tool: Tool, hole: Hole, settings: Settings) -> HolePlan:
@@ -109,7 +109,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"deepest stroke with {settings.legs} legs")
     check_robot(robot, settings)
-    deepest = deepest_as_drilled(drilling, settings)
+    deepest = deepest_in_cycle(drilling, settings)
     drilling = drilling.without_motion()
     hole = drilling.hole
     if deepest.profile is None or deepest.branch is None:
@@ -119,8 +119,7 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     why = None
     for share in SHARES:
         shorter = drilling.deep(share * deepest.depth)
-        cut = Order(shorter, settings).candidate(cut_short(deepest.profile, shorter.hole.depth), deepest.branch)
-        answer = _passing(shorter, settings, () if cut is None else gentlest_first(shorter, settings, cut))
+        answer = _passing(shorter, settings, _as_deep(shorter, settings, deepest))
         if answer.verified is not None and answer.verified.passed:
             found = () if why is None else (_rejected("a deeper motion without a reversal", why, hole),)
             answer = replace(answer, findings=(*answer.findings, *found))
@@ -130,6 +129,17 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
         drilling, f"no stroke without a reversal was found that passes the check; of the deepest one: {why}"
     )
     return replace(none, deepest=0.0)
+
+
+def _as_deep(drilling: Drilling, settings: Settings, deepest: Deepest) -> tuple[Candidate, ...]:
+    """The deepest motion made as short as the hole, and the one of its likes that its gears disturb least."""
+    assert deepest.profile is not None
+    assert deepest.branch is not None
+    if chip_breaks(drilling, settings) is not None:
+        found = shallower(drilling, settings, deepest)
+        return () if found is None else (found,)
+    cut = Order(drilling, settings).candidate(cut_short(deepest.profile, drilling.hole.depth), deepest.branch)
+    return () if cut is None else gentlest_first(drilling, settings, cut)
 
 
 def _rejected(what: str, why: str, hole: Hole) -> Finding:
@@ -168,16 +178,16 @@ def _planned(drilling: Drilling, settings: Settings, *best: Candidate) -> HolePl
     return _none_passes(drilling, f"no motion was found that passes the check; of the best one: {why}")
 
 
-def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle) -> HolePlan:
+def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle, deepest: Deepest) -> HolePlan:
     """The answer with the best motion found that breaks chips and passes the check."""
-    found = chip_breaking(drilling, settings, cycle)
-    answer = _passing(drilling, settings, found)
-    if answer.verified is None or answer.verified.passed:
-        return answer
-    why = answer.verified.failures[0]
-    return _none_passes(
-        drilling, f"no motion that breaks chips was found that passes the check; of the last one: {why}"
-    )
+    answer = _passing(drilling, settings, motions_that_break(drilling, settings, cycle, deepest))
+    if answer.verified is not None and not answer.verified.passed:
+        why = answer.verified.failures[0]
+        answer = _none_passes(
+            drilling, f"no motion that breaks chips was found that passes the check; of the last one: {why}"
+        )
+    found = None if answer.motion is None else answer.motion.profile
+    return _with_deepest(answer, settings, raised(drilling, settings, cycle, deepest, found))
 
 
 def _none_passes(drilling: Drilling, message: str) -> HolePlan:
@@ -232,6 +242,9 @@ def _with_deepest(answer: HolePlan, settings: Settings, deepest: Deepest) -> Hol
     found, hole = list(answer.findings), answer.hole.id
     if settings.min_rate_rule == "mean" and settings.min_rate > 0 and deepest.depth > 0:
         message = "the deepest stroke is a lower bound: it keeps the motion threshold at every point"
+        found.append(Finding("info", "deepest", message, hole))
+    if answer.hole.drilled_by(settings.cycle).kind == "chip_break" and deepest.depth > 0:
+        message = "the deepest stroke that breaks chips is what was found: that none is deeper is not proven"
         found.append(Finding("info", "deepest", message, hole))
     if deepest.beyond_cap > deepest.depth:
         message = (

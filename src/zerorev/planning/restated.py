@@ -210,7 +210,7 @@ def check_hole(
         again = plan(robot, tool, stated.hole, settings)
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
-        unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), again.findings)
+        unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), _but(again.findings, *_unknown(stated)))
         return CheckedHole(None, (*differences, *unsaid_or_foreign))
     own = figures(robot, tool, settings, stated)
     answer = stated if own is None else own.answer
@@ -238,7 +238,7 @@ def check_hole(
     digits = cache(partial(_slack, robot, tool, settings, stated, own))
     differences = _fields_differ(robot, stated, found, digits)
     # what fails is said already
-    unsaid = (OF_A_PROOF, *_later(stated.findings), *(() if verified.passed else ("verification",)))
+    unsaid = (OF_A_PROOF, *_unknown(stated), *_later(stated.findings), *(() if verified.passed else ("verification",)))
     differences += findings_differ(_but(stated.findings, *unsaid), _but(said, *unsaid))
     differences += _asked_differs(robot, settings, stated, deepest)
     if own is not None:
@@ -296,6 +296,11 @@ def _reversals(answer: HolePlan) -> int:
 
 def _in_air(answer: HolePlan) -> int:
     return sum(stroke.reversals_in_air for stroke in answer.strokes)
+
+
+def _unknown(stated: HolePlan) -> tuple[FindingKind, ...]:
+    """Findings of a figure that a file does not state."""
+    return ("deepest",) if stated.deepest is None else ()
 
 
 def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:

@@ -62,4 +62,7 @@ def why_none(drilling: Drilling, settings: Settings) -> tuple[Finding, ...]:
     rate = (
         f" while every joint moves {np.rad2deg(settings.min_rate) / 1e3:g} deg/mm or more" if settings.min_rate else ""
     )
-    return (Finding("error", "no_stroke", f"no stroke, however short, is without a reversal{rate}", drilling.hole.id),)
+    message = f"no stroke, however short, is without a reversal{rate}"
+    if drilling.hole.drilled_by(settings.cycle).kind == "chip_break":
+        message = f"no stroke that breaks chips was found without a reversal{rate}"
+    return (Finding("error", "no_stroke", message, drilling.hole.id),)

@@ -5,13 +5,13 @@ twice: the slope of the way back has to lie on the other side of all critical ra
 an interval of slopes at every break. Of it the slope nearest to the retract's is taken, so that from break to break the
 spin is shifted by little: by the difference to the plunge's slope times the way back.
 
-The search is the one for straight legs, asked for more and more margin, each of its answers with the breaks put in:
-good motions, of which none is proven to be the best.
+The search is the one for straight legs, asked for more and more margin, each of its answers with the breaks put in, and
+the best of these improved with the breaks in them: good motions, of which none is proven to be the best.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -19,37 +19,50 @@ import numpy as np
 from zerorev.model.cycle import Cycle
 from zerorev.model.profile import Profile
 from zerorev.model.settings import Settings
-from zerorev.motion.drilling import Drilling, joint_rates
+from zerorev.motion.drilling import Drilling
+from zerorev.search.broken_legs import CLEAN, GUARDS, BrokenLegs, Numbers
 from zerorev.search.optimum import best_motion, on_each_branch
 from zerorev.search.rank import Candidate, Order
 
-__all__ = ["chip_breaking", "with_breaks"]
+__all__ = ["chip_breaking", "quickly", "with_breaks"]
 
 MARGINS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.5, 3.0)  # beyond the motion threshold, as shares of it
-ROUNDS = 4
-# beyond the motion threshold on a way back [rad/m]: 0.001 deg/mm, so that the digits of a program turn no joint round
-ROOM = float(np.deg2rad(1.0))
 LEAST = float(np.deg2rad(2.0))  # [rad/m] of which they are shares where there is no threshold: 0.002 deg/mm
+IMPROVED = 3  # motions that are improved with the breaks in them
+ENOUGH = 1e-6  # relative: a smaller gain does not count
 
 
-def chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle) -> list[Candidate]:
+def chip_breaking(
+    drilling: Drilling, settings: Settings, cycle: Cycle, known: Iterable[Candidate] = ()
+) -> list[Candidate]:
     """Motions of straight legs that break chips, the best first; empty where none can be run.
 
     Args:
         drilling: what is drilled.
         settings: by which they are ranked.
         cycle: how often and how far the tool draws back.
+        known: motions that break chips, found otherwise.
     """
     order = Order(drilling, settings)
-    found = []
-    for one in _straight(drilling, settings):
-        profile = with_breaks(drilling, settings, one.profile, one.branch, cycle)
-        bound = settings.psi_bound
-        if bound is None or np.abs(profile.psi).max() <= bound:
-            candidate = order.candidate(profile, one.branch)
-            if candidate is not None:
-                found.append(candidate)
-    return sorted(found, key=order.rank)
+    found = [*known, *_broken(order, cycle, _straight(drilling, settings))]
+    best = sorted(found, key=order.rank)[:IMPROVED]
+    return sorted([*found, *(better for one in best for better in _improved(order, cycle, one))], key=order.rank)
+
+
+def quickly(drilling: Drilling, settings: Settings, cycle: Cycle, known: Iterable[Candidate] = ()) -> Candidate | None:
+    """A motion that breaks chips, for a map: the best one without breaks, both ways, improved with the breaks put in.
+
+    Args:
+        drilling: what is drilled.
+        settings: by which motions are ranked.
+        cycle: how often and how far the tool draws back.
+        known: see `chip_breaking`.
+    """
+    order = Order(drilling, settings)
+    plain = best_motion(drilling, replace(settings, legs="straight", proof_boxes=0))
+    ways = [] if plain is None else [plain, order.candidate(plain.profile.reversed(), plain.branch)]
+    found = [*known, *_broken(order, cycle, [way for way in ways if way is not None])]
+    return order.best([*found, *(better for one in found for better in _improved(order, cycle, one))])
 
 
 def with_breaks(drilling: Drilling, settings: Settings, profile: Profile, branch: int, cycle: Cycle) -> Profile:
@@ -57,62 +70,42 @@ def with_breaks(drilling: Drilling, settings: Settings, profile: Profile, branch
 
     Args:
         drilling: robot, tool and hole.
-        settings: with the motion threshold, and the greatest twist.
+        settings: with the motion threshold, the greatest twist, and the stand-off of the corner.
         profile: of three breakpoints.
         branch: 0..7.
         cycle: how often and how far the tool draws back.
     """
-    plunge, retract = profile.twist_rate
-    standoff, psi = [float(profile.standoff[1])], [float(profile.psi[1])]
-    for at in cycle.breaks(float(profile.standoff[0]))[::-1]:  # from the corner outwards
-        end = float(at) + cycle.back, psi[-1] + plunge * (float(at) + cycle.back - standoff[-1])
-        slope = _way_back(drilling, settings, branch, end, (plunge, retract), cycle.back)
-        standoff += [end[0], float(at)]
-        psi += [end[1], end[1] - slope * cycle.back]
-    psi.append(psi[-1] + plunge * (float(profile.standoff[0]) - standoff[-1]))
-    standoff.append(float(profile.standoff[0]))
-    return Profile(np.array([*standoff[::-1], profile.standoff[2]]), np.array([*psi[::-1], profile.psi[2]]))
+    return BrokenLegs.at(drilling, settings, branch, cycle, float(profile.standoff[0])).motion(Numbers.of(profile))
 
 
-def _way_back(
-    drilling: Drilling,
-    settings: Settings,
-    branch: int,
-    end: tuple[float, float],
-    slopes: tuple[float, float],
-    back: float,
-) -> float:
-    """The slope nearest to the retract's with which the tool draws back so that no joint turns round [rad/m].
+def _broken(order: Order, cycle: Cycle, motions: Iterable[Candidate]) -> Iterator[Candidate]:
+    """Motions with the breaks put in, as far as they can be run."""
+    bound = order.settings.psi_bound
+    for one in motions:
+        profile = with_breaks(order.drilling, order.settings, one.profile, one.branch, cycle)
+        found = order.candidate(profile, one.branch)
+        if found is not None and (bound is None or np.abs(profile.psi).max() <= bound):
+            yield found
 
-    The retract's own where there is none.
 
-    Args:
-        drilling: robot, tool and hole.
-        settings: with the motion threshold, and the greatest twist.
-        branch: 0..7.
-        end: stand-off [m] and spin [rad] at which the way back ends, and the plunge continues.
-        slopes: of plunge and retract [rad/m].
-        back: length of the way back [m].
-    """
-    plunge, retract = slopes
-    least = settings.min_rate + ROOM
-    slope = retract
-    for _ in range(ROUNDS):  # where it begins depends on the slope
-        s = np.array([end[0], end[0] - back])
-        theta_s, theta_psi = (
-            each[:, branch] for each in joint_rates(drilling, s, np.array([end[1], end[1] - slope * back]))
-        )
-        way = -np.sign(theta_s + plunge * theta_psi)
-        # way * (theta_s + u theta_psi) >= least
-        with np.errstate(divide="ignore", invalid="ignore"):
-            at = (least / way - theta_s) / theta_psi
-        rising = way * theta_psi > 0
-        low = float(np.max(at[rising], initial=-settings.max_twist))
-        high = float(np.min(at[~rising], initial=settings.max_twist))
-        if not low <= high:
-            return retract
-        slope = float(np.clip(retract, low, high))
-    return slope
+def _improved(order: Order, cycle: Cycle, motion: Candidate) -> Iterator[Candidate]:
+    """What a motion becomes in small steps, its depth kept: of less travel, or of more margin where that is asked."""
+    settings, start = order.settings, Numbers.of(motion.profile)
+    legs = BrokenLegs.at(order.drilling, settings, motion.branch, cycle, motion.depth)
+    unit = settings.min_rate or LEAST
+    for guard in (*GUARDS, *(unit * margin for margin in MARGINS[1:] if settings.objective == "margin")):
+        guarded = replace(legs, guard=guard)
+        numbers, lack = guarded.improved(start, "travel", ENOUGH)
+        if lack > CLEAN:
+            break
+        found = order.candidate(guarded.motion(numbers), motion.branch)
+        if found is None:
+            continue
+        yield found
+        if found.reversals == 0 and found.keeps_threshold:
+            start = numbers
+            if settings.objective != "margin":
+                break
 
 
 def _straight(drilling: Drilling, settings: Settings) -> Iterator[Candidate]:

@@ -26,6 +26,7 @@ def _quantity(way: Way, how: str) -> Quantity:
         more_is_better=True,
         nothing=0.0,
         free_legs=False,
+        cycles=False,
         seeded=True,
         chunk=4,
         offered=False,
