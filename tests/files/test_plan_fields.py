@@ -36,7 +36,8 @@ def schema_leaves(form: type[BaseModel], path: str = "") -> Iterator[tuple[str, 
 
 
 HOLE = dict(schema_leaves(PlanHole))
-HEAD = dict(schema_leaves(PlanHead))
+# what a further tool does is a plan of its own, made of the same forms
+HEAD = {path: words for path, words in schema_leaves(PlanHead) if not path.startswith("tools.")} | {"tools": ()}
 
 
 @pytest.mark.parametrize(("fields", "schema"), [(HOLE_FIELDS, HOLE), (HEAD_FIELDS, HEAD)], ids=["hole", "head"])

@@ -138,8 +138,8 @@ def test_a_hole_of_one_stroke_says_so_in_its_file():
     assert stroke["answer"] is None
     assert stroke["standoff_mm"] == data["holes"][0]["standoff_mm"]
     data["holes"][0]["strokes"][0]["psi_deg"][1] += 1.0
-    with pytest.raises(InputError, match=r"strokes\[0\].psi_deg: contradicts"):
-        plan_from_text(json.dumps(data), "plan")
+    (wrong,) = check_plan(plan_from_text(json.dumps(data), "plan")).wrong
+    assert wrong.message.startswith("strokes[0].psi_deg[1]: stated ")
 
 
 @pytest.mark.parametrize("number", POSITIONS)
@@ -164,7 +164,7 @@ def spoiled(data, edit):
         (lambda hole: hole["strokes"].pop(2), "answer.id"),
         (lambda hole: hole["strokes"].pop(), "strokes, depth_mm"),
         (lambda hole: hole["strokes"][1].update(reversals_in_air=4), "reversals_in_air"),
-        (lambda hole: hole["strokes"][1].update(tool=1), "tool"),
+        (lambda hole: hole["strokes"][1].update(tool=1), "answer.id"),
         (lambda hole: hole["strokes"][1]["feeds_mm_s"].update(plunge=7.0), "feeds_mm_s"),
         (lambda hole: hole["strokes"][2]["answer"].update(travel_deg=1.0), "travel_deg"),
         (lambda hole: hole["strokes"][2]["answer"]["target_mm"].__setitem__(0, 480.5), "target_mm"),

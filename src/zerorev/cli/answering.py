@@ -15,7 +15,7 @@ from zerorev.files.plan_conversion import as_written
 from zerorev.files.text import read_text
 from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes
-from zerorev.planning.job import answers, in_sequence, unanswered
+from zerorev.planning.job import answers, in_sequence, plan_job, unanswered
 from zerorev.planning.sequence import sequenced
 from zerorev.planning.tool_turn import ToolTurn
 from zerorev.planning.tried_otherwise import TriedOtherwise
@@ -123,6 +123,7 @@ def run(
             if keep:
                 holes.append(final)
         said = (*said, *turns.findings())
+        whole = replace(whole, further=_of_the_further_tools(job, strokes, machines))
         if part is not None:
             part.finish(whole, changed, said)
     if output is not None and fresh:  # what was kept from another run was not checked by this one
@@ -135,7 +136,12 @@ def run(
     elif json:
         terminal.print_json(plan_to_json(whole))
     else:
+        if whole.further:
+            terminal.say(f"tool 1: {whole.tool.name}")
         shown.show()
+        for number, each in enumerate(whole.further, 2):
+            terminal.say(f"tool {number}: {each.tool.name}")
+            Shown(each, each.holes).show()
         what = "plan" if strokes == "asked" else "depths"
         if output is not None:
             terminal.say(f"{what} written to {output}")
@@ -145,7 +151,20 @@ def run(
             terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
         # beside the answer, which is the same each time
         terminal.note(f"elapsed time {minutes(time.monotonic() - began)}")
-    return shown.sound
+    return shown.sound and all(Shown(each, each.holes).sound for each in whole.further)
+
+
+def _of_the_further_tools(job: Job, strokes: Strokes, machines: Machines) -> tuple[Plan, ...]:
+    """The plans of the further tools; of them nothing is kept where the run is interrupted."""
+    found = []
+    for number, each in enumerate(job.further, 2):
+        with terminal.progress(f"tool {number}", len(each.holes)) as progress:
+            found.append(
+                plan_job(
+                    each, progress, strokes=strokes, workers=machines.processes, scheduler=machines.scheduler
+                )
+            )  # fmt: skip
+    return tuple(found)
 
 
 def _in_sequence(

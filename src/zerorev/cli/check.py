@@ -14,6 +14,9 @@ from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.plan import Plan
+    from zerorev.model.written import WrittenProgram
+    from zerorev.planning.restated import Checked
+    from zerorev.program.dialect import Dialect
 
 __all__ = ["check"]
 
@@ -89,7 +92,7 @@ def check(
 
     with terminal.progress("checking", len(stated.holes)) as progress:
         checked = check_plan(stated, workers=None, progress=progress)
-    if not checked.wrong and _passed(stated) <= _passed(checked.plan):
+    if checked.as_stated and _passed(stated) <= _passed(checked.plan):
         remember(text)
     if program is not None:
         from zerorev.model.strokes import by_stroke, together
@@ -98,6 +101,7 @@ def check(
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
+            checked = _of_the_program(checked, written, dialect, program.stem)
             strokes = by_stroke(checked.plan)
             drilled = as_exported(strokes, written, dialect, program.stem)
             proven = together(checked.plan, certify_program(strokes, written, drilled))
@@ -132,16 +136,44 @@ def check(
     return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
 
 
-def _passed(plan: Plan) -> set[str]:
-    """Ids of the holes that are said to have passed the check."""
-    return {hole.hole.id for hole in plan.holes if hole.verified is not None and hole.verified.passed}
+def _of_the_program(checked: Checked, written: WrittenProgram, dialect: Dialect, stem: str) -> Checked:
+    """The plan of the tool that a program is of: the one from which it differs least."""
+    from zerorev.model.strokes import by_stroke
+    from zerorev.program.as_exported import as_exported
+
+    each_tool = (checked, *checked.further)
+    if len(each_tool) == 1:
+        return checked
+    found: list[tuple[int, Checked]] = []
+    why: InputError | None = None
+    for each in each_tool:
+        try:
+            drilled = as_exported(by_stroke(each.plan), written, dialect, stem)
+        except InputError as error:
+            why = why or error
+            continue
+        found.append((sum(len(hole.wrong) + (hole.hole is None) for hole in drilled), each))
+    if not found and why is not None:
+        raise why
+    closest = min(found, key=lambda pair: pair[0])[1]
+    return replace(closest, plan=replace(closest.plan, further=()), further=())
+
+
+def _passed(plan: Plan) -> set[tuple[int, str]]:
+    """Tools and ids of the holes that are said to have passed the check."""
+    return {
+        (number, hole.hole.id)
+        for number, each in enumerate(plan.of_all_tools)
+        for hole in each.holes
+        if hole.verified is not None and hole.verified.passed
+    }
 
 
 def _verdict(answer: Plan, *, certify: bool = False) -> int:
     from zerorev.report.words.answer import Shown
 
-    shown = Shown(answer, answer.holes)
-    return FINE if shown.sound and (shown.certified or not certify) else FOUND
+    shown = [Shown(each, each.holes) for each in answer.of_all_tools]
+    return FINE if all(each.sound and (each.certified or not certify) for each in shown) else FOUND
 
 
 def _proofs(plan: dict[str, Any], program: str, unexamined: list[str]) -> dict[str, Any]:
@@ -153,4 +185,7 @@ def _proofs(plan: dict[str, Any], program: str, unexamined: list[str]) -> dict[s
 def _show_plan(answer: Plan) -> None:
     from zerorev.report.words.answer import Shown
 
-    Shown(answer, answer.holes).show()
+    for number, each in enumerate(answer.of_all_tools, 1):
+        if answer.further:
+            terminal.say(f"tool {number}: {each.tool.name}")
+        Shown(each, each.holes).show()

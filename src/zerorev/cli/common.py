@@ -94,13 +94,21 @@ def _whole(kind: object, tokens: Sequence[Token]) -> int:
 Whole = Annotated[int, Parameter(converter=_whole)]
 
 
-def job_of(path: Path, **how: Any) -> Job:
-    """The job of a file, as `files.io.read_job` has it; what was left out of its list of holes is noted beside."""
+def job_of(path: Path, *, every_tool: bool = False, **how: Any) -> Job:
+    """The job of a file, as `files.io.read_job` has it; what was left out of its list of holes is noted beside.
+
+    Args:
+        path: of the file.
+        every_tool: whether the command deals with all tools of the job; else it is noted that only the first counts.
+        how: as `read_job` takes it.
+    """
     from zerorev.files.io import read_job
 
     job = read_job(path, **how)
     for note in job.notes:
         terminal.note(note)
+    if job.further and not every_tool:
+        terminal.note(f"the job has {len(job.further) + 1} tools; here only the first one counts: {job.tool.name}")
     return job
 
 

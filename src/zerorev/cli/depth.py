@@ -36,7 +36,7 @@ def depth(
         instead: Of the job's settings.
     """
     check_outputs((output,), job)
-    wanted = job_of(job, depth_needed=False, options=given(instead))
+    wanted = job_of(job, every_tool=True, depth_needed=False, options=given(instead))
 
     from zerorev.cli.answering import run
 

@@ -32,6 +32,7 @@ def export(
     start: Annotated[str | None, Parameter(name="--from")] = None,
     only: str | None = None,
     retract: str | None = None,
+    tool: Whole | None = None,
 ) -> int:
     """Write a plan as a robot program, after a last check of its speeds, turns and poses.
 
@@ -50,6 +51,8 @@ def export(
         only: Only the holes of these ids, separated by commas.
         retract: Instead, a program that pulls the drill out of the hole of this id, in which the robot has stopped,
             along the drill axis from wherever it stands.
+        tool: Of a plan of several tools: only the program of this one, from 1; by default each has its own, NAME of the
+            first, NAME_tool_2 and so on of the others.
     """
     from zerorev.files.checked_files import is_checked
     from zerorev.files.io import plan_from_text, plan_text
@@ -71,30 +74,49 @@ def export(
     from zerorev.program.export import program_of, retract_name, retract_program
     from zerorev.program.plan_mark import check_replaceable, plan_mark
 
-    ids = _ids(answer, only)
-    called = program_of(answer, start, ids) if retract is None else retract_name(answer, retract)
-    if output is None:
-        file, mark = program_file(called, dialect_for(answer, controller).name), plan_mark(answer.name, plan.name)
-        check_replaceable(plan.parent, [file], mark, INSTEAD)
-    name = output.stem if output else None
-    if retract is not None:
-        program = retract_program(answer, retract, controller, name=name, plan_file=plan.name)
-    else:
-        with terminal.progress("checking", len(answer.holes)) as progress:
-            program = to_program(
-                answer,
-                controller,
-                skip_failed=skip_failed,
-                name=name,
-                plan_file=plan.name,
-                holes_per_program=holes_per_program,
-                start=start,
-                only=ids,
-                workers=None,
-                progress=progress,
-            )
-    _write(program, answer, plan, output)
+    ids, written = _ids(answer, only), []
+    for each, place in _wanted(answer, tool, output, alone=retract is not None):
+        called = program_of(each, start, ids) if retract is None else retract_name(each, retract)
+        if place is None:
+            file, mark = program_file(called, dialect_for(each, controller).name), plan_mark(each.name, plan.name)
+            check_replaceable(plan.parent, [file], mark, INSTEAD)
+        name = place.stem if place else None
+        if retract is not None:
+            program = retract_program(each, retract, controller, name=name, plan_file=plan.name)
+        else:
+            with terminal.progress("checking", len(each.holes)) as progress:
+                program = to_program(
+                    each,
+                    controller,
+                    skip_failed=skip_failed,
+                    name=name,
+                    plan_file=plan.name,
+                    holes_per_program=holes_per_program,
+                    start=start,
+                    only=ids,
+                    workers=None,
+                    progress=progress,
+                )
+        written.append((program, each, place))
+    for program, each, place in written:
+        _write(program, each, plan, place)
     return FINE
+
+
+def _wanted(plan: Plan, tool: int | None, output: Path | None, *, alone: bool) -> list[tuple[Plan, Path | None]]:
+    """The plans of the tools whose programs are wanted, and where each goes."""
+    tools = plan.of_all_tools
+    if tool is not None and not 1 <= tool <= len(tools):
+        raise InputError(f"there is no tool {tool}", where="--tool", accepted=f"1 to {len(tools)}")
+    if alone and tool is None and len(tools) > 1:
+        raise InputError("is missing", where="--tool", accepted=f"1 to {len(tools)}: the tool that is in the hole")
+    if tool is not None:
+        return [(tools[tool - 1], output)]
+    places = [
+        output if output is None or n == 1 else output.with_name(f"{output.stem}_tool_{n}{output.suffix}")
+        for n in range(1, len(tools) + 1)
+    ]
+    return list(zip(tools, places, strict=True))
 
 
 def _ids(plan: Plan, only: str | None) -> list[str] | None:

@@ -56,7 +56,7 @@ def plan(
         check_folder(figures)
     if figures_of is not None and figures is None:
         raise InputError("draws nothing without a folder", where="--figures-of", accepted="--figures DIR beside it")
-    wanted = job_of(job, options=given(instead))
+    wanted = job_of(job, every_tool=True, options=given(instead))
 
     from zerorev.cli.answering import Pictures, run
 

@@ -6,6 +6,7 @@ A file becomes plain data (`text`), a checked form (`schema`, `validation`) and 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +28,7 @@ from zerorev.files.schema import JobFile, SettingsForm
 from zerorev.files.stated_forms import Form
 from zerorev.files.table_units import Unit
 from zerorev.files.text import Document, json_document, json_text, read_bytes, read_text
+from zerorev.files.tool_uses import used, uses_of
 from zerorev.files.validation import checked, inside
 from zerorev.files.yaml_text import yaml_document
 from zerorev.model.job import Job
@@ -254,10 +256,16 @@ def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bo
     form = checked(JobFile, document)
     with inside(document.where(("robot",))):
         robot = read_robot(form.robot, folder)
-    with inside(document.where(("tool",))):
-        tool = read_tool(form.tool, folder) if isinstance(form.tool, str) else tool_from(form.tool)
     with inside(document.file):
         settings, T_base_part = with_feeds(form, settings_from(form)), frame_from(form.part_frame)
-    holes, notes, said = holes_of(form, document, folder, robot, tool, T_base_part, depth_needed=depth_needed)
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
-    return Job(robot, tool, holes, settings, T_base_part, form.name or name, reference, notes, said)
+    jobs = []
+    for n, (at, use) in enumerate(uses_of(form, document)):
+        with inside(document.where((*at, "tool"))):
+            tool = read_tool(use.tool, folder) if isinstance(use.tool, str) else tool_from(use.tool)
+        holes, notes, said = holes_of(form, document, folder, robot, tool, T_base_part, depth_needed=depth_needed)
+        called = (form.name or name) + (f"_tool_{n + 1}" if n else "")
+        job = Job(robot, tool, holes, settings, T_base_part, called, reference, notes, said)
+        with inside(document.where(at) if at else document.file):
+            jobs.append(used(job, use))
+    return replace(jobs[0], further=tuple(jobs[1:]))

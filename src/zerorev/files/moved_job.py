@@ -58,11 +58,14 @@ def write_job(
     if T_base_part is not None:
         data["part_frame"] = frame_text(T_base_part)
     start, end = source.resolve().parent, target.resolve().parent
-    for key in ("robot", "tool", "holes"):
-        value = data[key]
+    data["tools"] = [dict(use) for use in data.get("tools") or ()]
+    for part, key in ((data, "robot"), (data, "tool"), (data, "holes"), *((use, "tool") for use in data["tools"])):
+        value = part.get(key)
         if isinstance(value, str) and (start / value).is_file() and not Path(value).is_absolute():
             there = os.path.relpath(start / value, end)
-            data[key] = there if "/" in there or "\\" in there or key == "holes" else f"./{there}"
+            part[key] = there if "/" in there or "\\" in there or key == "holes" else f"./{there}"
+    if not data["tools"]:
+        del data["tools"]
     head = "".join(f"# {line}\n" for line in note.splitlines())
     write_text(target, head + yaml_text(data))
 

@@ -22,7 +22,14 @@ from typing import Any, BinaryIO
 from zerorev.errors import InputError, OutputError
 from zerorev.files.output import as_output_error, check_file, write_pieces
 from zerorev.files.plan_conversion import answer_from
-from zerorev.files.plan_data import answer_data, asked_data, plan_head, sequence_data
+from zerorev.files.plan_data import (
+    answer_data,
+    asked_data,
+    further_data,
+    plan_head,
+    sequence_data,
+    with_further_strokes,
+)
 from zerorev.files.plan_schema import DepthHole, PlanHole
 from zerorev.files.stated_forms import data_of
 from zerorev.files.text import Document, json_pieces
@@ -137,9 +144,10 @@ class Part:
         head = dict(self._head)
         findings = [*head.pop("findings"), *map(data_of, said)]
         entries = (
-            answer_data(changed[n], self._strokes) if n in changed else entry for n, entry in enumerate(self._entries())
+            with_further_strokes(answer_data(changed[n], self._strokes) if n in changed else entry, plan, n)
+            for n, entry in enumerate(self._entries())
         )
-        rest = sequence_data(plan) | {"findings": findings}
+        rest = sequence_data(plan) | {"findings": findings} | further_data(plan)
         write_pieces(self._target, json_pieces(head | {"holes": entries} | rest))
         self.done = 0
 

@@ -29,8 +29,10 @@ from zerorev.files.plan_schema import (
     LostMotionForm,
     PlanFile,
     PlanHole,
+    ToolPlanForm,
 )
 from zerorev.files.stated_forms import Form, agree, noun_from
+from zerorev.files.strokes_agree import further_strokes_agree, same_axis, stroke_differs
 from zerorev.files.text import Document
 from zerorev.files.units import deg, m, mm, plain, rad, rad_per_m
 from zerorev.files.validation import checked, inside
@@ -60,7 +62,6 @@ from zerorev.model.profile import Profile
 __all__ = ["answer_from", "as_written", "plan_from", "written_motion"]
 
 N = TypeVar("N")
-SHIFTED_MM = 1e-9  # by which stand-offs differ that are counted from two places
 
 
 def plan_from(form: PlanFile | DepthFile) -> Plan:
@@ -81,7 +82,7 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
     ids = [hole.id for hole in holes]
     if len(set(ids)) < len(ids):
         raise InputError("two holes have the same id", where="holes", accepted="ids that differ")
-    return Plan(
+    plan = Plan(
         robot=robot,
         tool=tool,
         settings=settings,
@@ -92,9 +93,33 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
         strokes="asked" if isinstance(form, PlanFile) else "deepest",
         **_sequence_from(form),
     )
+    further = tuple(_further_from(plan, each, f"tools[{n}]") for n, each in enumerate(form.tools or ()))
+    further_strokes_agree([hole if isinstance(hole, PlanHole) else hole.plan for hole in holes], form.tools or [])
+    return replace(plan, further=further)
 
 
-def _sequence_from(form: PlanFile | DepthFile) -> dict[str, Any]:
+def _further_from(plan: Plan, form: ToolPlanForm, where: str) -> Plan:
+    """The plan of a further tool."""
+    with inside(where):
+        with inside("tool"):
+            tool = tool_from(form.tool)
+            _same_numbers(form.tool.sha256, tool_data(tool)["sha256"])
+        with inside("settings"):
+            settings = settings_from(form.settings, before=True)
+        ids, own = [hole.id for hole in form.holes], [hole.hole.id for hole in plan.holes]
+        agree("holes, their ids", ids, own)
+        return replace(
+            plan,
+            tool=tool,
+            settings=settings,
+            holes=tuple(answer_from(hole, f"holes[{i}] (hole {hole.id})") for i, hole in enumerate(form.holes)),
+            name=form.name,
+            findings=_nouns_from(Finding, form.findings),
+            **({"order": (), "transitions": (), "cycle_time": None} | _sequence_from(form)),
+        )
+
+
+def _sequence_from(form: PlanFile | DepthFile | ToolPlanForm) -> dict[str, Any]:
     """The order of the holes and the moves between them.
 
     Raises:
@@ -205,49 +230,32 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
 
 
 def _strokes_from(form: PlanHole, hole: Hole, where: str) -> dict[str, Any]:
-    """The strokes of a hole, where it has several, and the feeds of the first one.
+    """The strokes of a hole, where it has several; the feeds of the first one, and what contradicts the rest.
 
     Raises:
-        InputError: what is said of a stroke differs from what the hole, or the stroke's own answer, says.
+        InputError: strokes that are not of this hole, or of which the answer is missing.
     """
     if form.strokes is None:
         return {}
-    strokes = []
-    for n, each in enumerate(form.strokes):
+    strokes, unlike = [], list[str]()
+    of_the_first = [each for each in form.strokes if getattr(each, "tool") == 0]  # noqa: B009
+    for n, each in enumerate(of_the_first):
         at, own = f"strokes[{n}]", each.answer or form
-        if (each.answer is None) != (len(form.strokes) == 1):
+        if (each.answer is None) != (len(of_the_first) == 1):
             accepted = "null for the only stroke, and for none of several"
             raise InputError("is null, or not", where=f"{at}.answer", accepted=accepted)
         feeds = (float(m(each.feeds_mm_s.plunge)), float(m(each.feeds_mm_s.retract)))
         if each.answer is not None:
             agree(f"{at}.answer.id", each.answer.id, f"{form.id}, stroke {n + 1}")
             answer = replace(_hole_plan_from(each.answer, f"{where}, {at}.answer"), feeds=feeds)
-            _same_axis(f"{at}.answer", answer.hole, hole)
+            same_axis(f"{at}.answer", answer.hole, hole)
             strokes.append(noun_from(Stroke, each, answer=answer))
         else:
             agree(f"{at}.reversals_in_air", getattr(each, "reversals_in_air"), 0)  # noqa: B009
-            agree(f"{at}.tool", getattr(each, "tool"), 0)  # noqa: B009
-        up = form.depth_mm - own.depth_mm
-        agree(f"{at}.depth_mm", each.depth_mm, own.depth_mm)
-        for k, (here, there) in enumerate(zip(each.standoff_mm, own.standoff_mm or (), strict=False)):
-            agree(f"{at}.standoff_mm[{k}]", here, there + up, SHIFTED_MM)
-        agree(f"{at}.psi_deg", each.psi_deg, own.psi_deg)
-        agree(f"{at}.joints_deg", each.joints_deg.model_dump(), own.joints_deg and own.joints_deg.model_dump())
-        agree(f"{at}.corner", each.corner and each.corner.model_dump(), own.corner and own.corner.model_dump())
-        agree(f"{at}.reversals_in_material", each.reversals_in_material, getattr(own, "reversals"))  # noqa: B009
+        unlike += stroke_differs(at, each, own, form.depth_mm - own.depth_mm)
         if n == 0:
             first = {"feeds": feeds}
-    return {**first, "strokes": tuple(strokes)}
-
-
-def _same_axis(where: str, stroke: Hole, hole: Hole) -> None:
-    """Refuse a stroke that does not lie on the axis of its hole, or that is not counted as that is."""
-    for name, there, here in (
-        ("target_mm", mm(stroke.entry), mm(hole.entry)),
-        ("direction", stroke.direction, hole.direction),
-        ("psi_zero", stroke.psi_zero, hole.psi_zero),
-    ):
-        agree(f"{where}.{name}, its distance from the hole's own", float(np.abs(there - here).max()), 0.0, SHIFTED_MM)
+    return {**first, "strokes": tuple(strokes), "unlike": tuple(unlike)}
 
 
 def _motion_from(form: PlanHole) -> Motion | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,8 @@ from zerorev.model.plan import Corner, HolePlan, LostMotion, Motion, Plan, Score
 from zerorev.model.stated import stated
 from zerorev.model.strokes import shifted
 
-__all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "plan_data", "plan_head", "sequence_data",
-           "twist_spread"]  # fmt: skip
+__all__ = ["FORMS", "MOTION", "SCORE", "answer_data", "asked_data", "further_data", "plan_data", "plan_head",
+           "sequence_data", "twist_spread", "with_further_strokes"]  # fmt: skip
 
 FORMS: dict[Strokes, type[PlanFile] | type[DepthFile]] = {"asked": PlanFile, "deepest": DepthFile}
 """What file a plan becomes, by its strokes."""
@@ -31,8 +32,41 @@ def plan_data(plan: Plan) -> dict[str, Any]:
     """The plan as plain data, in the form of a plan file or, where its strokes are the deepest, of a depth file."""
     head = plan_head(plan)
     findings = head.pop("findings")
-    holes = [answer_data(hole, plan.strokes) for hole in plan.holes]
-    return head | {"holes": holes} | sequence_data(plan) | {"findings": findings}
+    holes = [with_further_strokes(answer_data(hole, plan.strokes), plan, n) for n, hole in enumerate(plan.holes)]
+    return head | {"holes": holes} | sequence_data(plan) | {"findings": findings} | further_data(plan)
+
+
+def further_data(plan: Plan) -> dict[str, Any]:
+    """What the further tools do, as it stands at the end of the file; nothing where there is one tool."""
+    tools = [
+        {"name": each.name, "tool": tool_data(each.tool), "settings": settings_data(each.settings)}
+        | {"holes": [answer_data(hole, "asked") for hole in each.holes]}
+        | sequence_data(each)
+        | {"findings": [data_of(finding) for finding in each.findings]}
+        for each in plan.further
+    ]
+    return {"tools": tools} if tools else {}
+
+
+def with_further_strokes(entry: dict[str, Any], plan: Plan, number: int) -> dict[str, Any]:
+    """A hole as it stands in the file with the strokes of the further tools among its own.
+
+    Args:
+        entry: the hole as the first tool alone leaves it.
+        plan: with the plans of the further tools.
+        number: of the hole, from 0.
+    """
+    own = entry.get("plan", entry)
+    if own["strokes"] is None:
+        return entry
+    hole_depth = own["depth_mm"] * 1e-3
+    further = [
+        data_of(replace(stroke, tool=tool)) | _stroke_data(hole_depth, stroke.answer) | {"answer": None}
+        for tool, each in enumerate(plan.further, 1)
+        for stroke in strokes_of(each.holes[number])
+    ]
+    own["strokes"] += plain(further)
+    return entry
 
 
 def sequence_data(plan: Plan) -> dict[str, Any]:
@@ -121,19 +155,25 @@ def _strokes_data(answer: HolePlan) -> list[dict[str, Any]] | None:
     """The strokes; of a hole with one motion that alone, which is known only where its feeds are."""
     if answer.strokes:
         return [
-            data_of(stroke) | _stroke_data(answer.hole, stroke.answer) | {"answer": _hole_data(stroke.answer)}
+            data_of(stroke) | _stroke_data(answer.hole.depth, stroke.answer) | {"answer": _hole_data(stroke.answer)}
             for stroke in answer.strokes
         ]
-    if answer.motion is None or answer.feeds is None:
-        return None
-    return [data_of(Stroke(answer)) | _stroke_data(answer.hole, answer) | {"answer": None}]
+    own = strokes_of(answer)
+    return [data_of(each) | _stroke_data(answer.hole.depth, answer) | {"answer": None} for each in own] or None
 
 
-def _stroke_data(hole: Hole, own: HolePlan) -> dict[str, Any]:
-    """A stroke of a hole, stand-offs counted from the hole's own target."""
+def strokes_of(answer: HolePlan) -> tuple[Stroke, ...]:
+    """The strokes of one tool in a hole: its only motion, too; none where there is no motion, or no feed is known."""
+    if answer.strokes:
+        return answer.strokes
+    return () if answer.motion is None or answer.feeds is None else (Stroke(answer),)
+
+
+def _stroke_data(depth: float, own: HolePlan) -> dict[str, Any]:
+    """A stroke of a hole of some depth [m], stand-offs counted from the hole's own target."""
     assert own.motion is not None
     assert own.feeds is not None
-    motion = shifted(own.motion, hole.depth - own.hole.depth)
+    motion = shifted(own.motion, depth - own.hole.depth)
     return {
         "depth_mm": mm(own.hole.depth),
         **{key: value for key, value in _motion_data(motion).items() if key != "branch"},

@@ -90,6 +90,7 @@ HEAD_FIELDS: dict[str, Field] = {
     "transitions.findings": Field("finding"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),
+    "tools": Field("input"),  # each is checked as a plan of its own
 }
 """By the path of a field in a file; an input and a finding stand for all below them."""
 

@@ -13,6 +13,7 @@ from zerorev.files.values import (
     MOST_BREAKPOINTS,
     MOST_HOLES,
     MOST_STROKES,
+    MOST_TOOLS,
     Branch,
     Depth,
     Name,
@@ -57,6 +58,7 @@ __all__ = [
     "PlanHead",
     "PlanHole",
     "StrokeForm",
+    "ToolPlanForm",
     "TransitionForm",
     "VerifiedForm",
 ]
@@ -189,7 +191,7 @@ class StrokeForm(Form):
     reversals_in_material: Counted = Field(description="a whole number: reversals of all joints in the stroke itself")
     answer: PlanHole | None = Field(
         description="a mapping: the stroke as a hole of its own, which ends where the stroke does; or null: it is the "
-        "only one, so that what the hole says is said of it"
+        "only one of the first tool, of which the hole itself is said, or one of a further tool, which is said in tools"
     )
 
 
@@ -309,6 +311,27 @@ class DepthHole(Form):
     plan: PlanHole = Field(description="a mapping: the motion that reaches it, as a hole of a plan file")
 
 
+class ToolPlanForm(Form):
+    """What a further tool does to the holes of a plan."""
+
+    name: Name = Field(description="text: names its program")
+    tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
+    settings: SettingsForm = Field(description="a mapping of the job's settings as they are for this tool")
+    holes: Many[PlanHole] = Field(
+        min_length=1, max_length=MOST_HOLES, description="a list of the same holes, in the order of the plan's own"
+    )
+    order: Annotated[list[Name], Field(max_length=MOST_HOLES, fail_fast=True)] | None = Field(
+        default=None, description="as that of the plan, for this tool"
+    )
+    transitions: Annotated[list[TransitionForm], Field(max_length=MOST_HOLES + 1, fail_fast=True)] | None = Field(
+        default=None, description="as those of the plan, for this tool"
+    )
+    cycle_time_s: NotNegative | None = Field(
+        default=None, description="a number, 0 or more [s]: as that of the plan, for this tool"
+    )
+    findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole, about this tool")
+
+
 class PlanHead(Form):
     """What a file says of all its holes."""
 
@@ -332,6 +355,10 @@ class PlanHead(Form):
         description="a number, 0 or more [s]: holes and transitions together; or null: not computed",
     )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole, about the whole plan")
+    tools: Annotated[list[ToolPlanForm], Field(max_length=MOST_TOOLS)] | None = Field(
+        default=None,
+        description="a list of what each further tool does to the same holes; or null: there is one tool alone",
+    )
 
 
 class PlanFile(PlanHead):

@@ -16,6 +16,7 @@ from zerorev.files.robot_schema import GivenFrameForm, GivenToolForm
 from zerorev.files.stated_forms import Form, keys_of, kind
 from zerorev.files.values import (
     MOST_HOLES,
+    MOST_TOOLS,
     AnglesDeg,
     Branch,
     Depth,
@@ -23,6 +24,7 @@ from zerorev.files.values import (
     Length,
     Name,
     PlaceMm,
+    Positive,
     SpinsDeg,
     StandoffsMm,
     Three,
@@ -31,7 +33,7 @@ from zerorev.model.controller import CALL, HEADER_LINE
 from zerorev.model.cycle import Cycle
 from zerorev.model.settings import Settings
 
-__all__ = ["ColumnsForm", "HoleForm", "JobFile", "SettingsForm"]
+__all__ = ["ColumnsForm", "HoleForm", "JobFile", "SettingsForm", "ToolUseForm"]
 
 CallTexts = Annotated[list[Name], Field(max_length=20)]
 
@@ -174,17 +176,56 @@ class FeedMmMinForm(Form):
     retract: Annotated[Length, Field(gt=0)] = Field(description="a number above 0 [mm/min]: feed of the retract")
 
 
+AnyTool = Annotated[Annotated[Name, Tag("<text>")] | Annotated[GivenToolForm, Tag("<mapping>")], Discriminator(kind)]
+
+
+class ToolFeedsForm(Form):
+    """Feeds of one of several tools."""
+
+    plunge: Positive | None = Field(default=None, description="a number above 0 [mm/s]; or null: the job's")
+    retract: Positive | None = Field(default=None, description="a number above 0 [mm/s]; or null: the job's")
+
+
+class ToolUseForm(Form):
+    """One of several tools, and how it drills."""
+
+    tool: AnyTool = Field(
+        description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg"
+    )
+    tool_number: Annotated[int, Field(ge=1, le=16)] | None = Field(
+        default=None, description="a whole number from 1 to 16: on the controller; or null: none is set"
+    )
+    depth_mm: Depth | None = Field(
+        default=None, description="a number above 0 [mm]: its stroke in each hole; or null: that of the hole"
+    )
+    feed_mm_s: ToolFeedsForm = Field(default=ToolFeedsForm(), description="a mapping of plunge and retract [mm/s]")
+    cycle: CycleForm | None = Field(
+        default=None, description="a mapping of kind, depth_mm and back_mm: how it drills; or null: as hole or job say"
+    )
+
+
+def _with_tool_or_tools(schema: dict[str, Any]) -> None:
+    """The published form of a job has one tool or a list of them."""
+    schema["anyOf"] = [{"required": ["tool"]}, {"required": ["tools"]}]
+
+
 class JobFile(SettingsForm):
     """A job file, YAML: a robot, a tool, holes, and how they are to be drilled."""
 
-    model_config = ConfigDict(title="zerorev job")
+    model_config = ConfigDict(title="zerorev job", json_schema_extra=_with_tool_or_tools)
 
     format: Literal["zerorev.job/1"] = Field(default="zerorev.job/1", description="zerorev.job/1")
     name: Name | None = Field(default=None, description="text: names the program; left out, it is the file's name")
     robot: Name = Field(description="text: a name that ships with zerorev, or the path of a robot file")
-    tool: Annotated[
-        Annotated[Name, Tag("<text>")] | Annotated[GivenToolForm, Tag("<mapping>")], Discriminator(kind)
-    ] = Field(description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg")
+    tool: AnyTool | None = Field(
+        default=None,
+        description="a name that ships with zerorev, the path of a tool file, or a mapping of tcp_mm and rpy_deg",
+    )
+    tools: Annotated[list[ToolUseForm], Field(min_length=1, max_length=MOST_TOOLS)] | None = Field(
+        default=None,
+        description="in place of tool: a list of the tools that drill all holes one after the other, each a mapping of "
+        "tool, tool_number, depth_mm, feed_mm_s and cycle; what is left out is the job's",
+    )
     part_frame: GivenFrameForm = Field(
         default=GivenFrameForm(),
         description="a mapping of xyz_mm and rpy_deg, or of KUKA's x, y, z, a, b, c: the part frame in the base frame",

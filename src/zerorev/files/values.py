@@ -9,13 +9,14 @@ from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema
 from zerorev.visible import one_line
 
 __all__ = [
-    "INERTIA", "MOST_BREAKPOINTS", "MOST_HOLES", "MOST_STROKES", "Angle", "AnglesDeg", "Branch", "Depth", "Id",
-    "Inertia", "Length", "Name", "NotNegative", "PlaceMm", "Positive", "SixDeg", "SixPositive", "SpinsDeg",
+    "INERTIA", "MOST_BREAKPOINTS", "MOST_HOLES", "MOST_STROKES", "MOST_TOOLS", "Angle", "AnglesDeg", "Branch", "Depth",
+    "Id", "Inertia", "Length", "Name", "NotNegative", "PlaceMm", "Positive", "SixDeg", "SixPositive", "SpinsDeg",
     "StandoffsMm", "StrokeName", "Three",
 ]  # fmt: skip
 
 MOST_HOLES = 100_000
 MOST_STROKES = 1_000  # of a hole
+MOST_TOOLS = 20  # of a job
 MOST_BREAKPOINTS = 10_000  # of a motion
 
 

@@ -50,6 +50,7 @@ class Job:
             `zerorev.model.hole.REFERENCES`, or a vector in the part frame; None: their own `psi_zero` moves with it.
         notes: what was left out where the files of the job were read, in words.
         said: what was assumed there, and what is probably wrong with them.
+        further: the same holes for the further tools, which drill them one after the other when this one has.
     """
 
     robot: Robot
@@ -61,6 +62,7 @@ class Job:
     psi_reference: str | tuple[float, ...] | None = None
     notes: tuple[str, ...] = field(default=(), compare=False)
     said: tuple[Finding, ...] = field(default=(), compare=False)
+    further: tuple[Job, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the holes, that their ids differ, and name the controller."""

@@ -313,6 +313,7 @@ class HolePlan(Shown):
         lost_motion: what the gears are predicted to add at the tip; None where the robot's masses are not known.
         corner: how the motion turns round; None without one, and in files of before it was said.
         feeds: of the plunge and of the retract [m/s]; None without a motion, and in files of before they were said.
+        unlike: what the file, from which this was read, says of its strokes otherwise than of their motions.
         strokes: all of them, of a hole that is drilled in several. Motion, corner and critical rates are those of the
             first one then, stand-offs counted from the hole's own target; the score is that of all together.
     """
@@ -362,6 +363,7 @@ class HolePlan(Shown):
     ] = None
     feeds: tuple[float, float] | None = None
     strokes: tuple[Stroke, ...] = ()
+    unlike: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -410,6 +412,7 @@ class Plan(Shown):
         order: ids of the holes that have a motion, as they are drilled; empty: as they are listed.
         transitions: the moves between them, in order.
         cycle_time: of the holes and transitions together [s]; None: not known.
+        further: plans of the same holes for the further tools, in order.
     """
 
     robot: Robot
@@ -423,6 +426,12 @@ class Plan(Shown):
     order: tuple[str, ...] = ()
     transitions: tuple[Transition, ...] = ()
     cycle_time: float | None = None
+    further: tuple[Plan, ...] = ()
+
+    @property
+    def of_all_tools(self) -> tuple[Plan, ...]:
+        """This plan, of the first tool, and those of the further ones."""
+        return (self, *self.further)
 
     @property
     def all_findings(self) -> tuple[Finding, ...]:

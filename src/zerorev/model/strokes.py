@@ -111,13 +111,15 @@ def stroke_by_stroke(plan: Plan, work: Callable[[Plan], Plan]) -> Plan:
 
     Args:
         plan: any.
-        work: takes a plan of which each stroke is a hole of its own, and gives it back with what was found.
+        work: takes a plan, of one tool, of which each stroke is a hole of its own, and gives it back with what was
+            found.
     """
-    return together(plan, work(by_stroke(plan)))
+    further = tuple(stroke_by_stroke(each, work) for each in plan.further)
+    return replace(together(plan, work(by_stroke(plan))), further=further)
 
 
 def by_stroke(plan: Plan) -> Plan:
-    """A plan of which each stroke is a hole of its own; one without holes of several strokes as it is.
+    """A plan of which each stroke of the first tool is a hole of its own; one without holes of several as it is.
 
     Args:
         plan: any.

@@ -30,11 +30,11 @@ def plan_job(
     workers: int | None = 1,
     scheduler: str | None = None,
 ) -> Plan:
-    """Plan every hole of a job; what is wrong with one hole is a finding, and the others are still planned.
+    """Plan every hole of a job, tool by tool; what is wrong with one hole is a finding, the others are still planned.
 
     Args:
         job: robot, tool, holes, settings.
-        progress: called with (holes done, holes in all) before the first and after each hole.
+        progress: called with (holes done, holes in all) before the first and after each hole, tool by tool.
         strokes: those `asked` for, or of each hole the `deepest` without a reversal (`plan_deepest`).
         workers: processes to run it on; None: one per core where the job is large enough. The plan is the same. A
             script that asks for more than one must be safe to import (`if __name__ == "__main__":`), as everywhere in
@@ -59,7 +59,9 @@ def plan_job(
     sequence = sequenced(job, lambda: written, choose=strokes == "asked", machines=Machines(workers, scheduler))
     holes = tuple(sequence.changed.get(n, answer) for n, answer in enumerate(found))
     whole = in_sequence(unanswered(job, strokes, holes), sequence)
-    return with_tool_turn(replace(whole, findings=(*whole.findings, *tried.findings())))
+    whole = with_tool_turn(replace(whole, findings=(*whole.findings, *tried.findings())))
+    further = [plan_job(each, progress, strokes=strokes, workers=workers, scheduler=scheduler) for each in job.further]
+    return replace(whole, further=tuple(further))
 
 
 def unanswered(job: Job, strokes: Strokes, holes: tuple[HolePlan, ...] = ()) -> Plan:

@@ -24,7 +24,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Stroke, Strokes, Verification
 from zerorev.model.robot import Robot
-from zerorev.model.strokes import of_strokes, stroke_by_stroke
+from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
@@ -33,8 +33,8 @@ from zerorev.planning.answered import cycle_time, motion_findings
 from zerorev.planning.corner import corner_of
 from zerorev.planning.hole import evaluated_stroke, lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
-from zerorev.planning.pecks import strokes_together
 from zerorev.planning.sequence import moves_of, time_of
+from zerorev.planning.strokes_again import strokes_again, strokes_differ, with_checks, with_findings_of
 from zerorev.planning.tool_turn import with_tool_turn
 from zerorev.search.rank import Candidate, Order
 from zerorev.verify.between import moves_claimed
@@ -46,7 +46,6 @@ from zerorev.workers import Machines, Workers
 __all__ = ["Checked", "check_hole", "check_plan"]
 
 BETTER = 1e-5  # relative: by so much a motion that is found again has to be better than the stated one
-PLACE = 1e-9  # [m]
 OF_A_PROOF = "tolerance"  # one that a certificate adds
 LATER: tuple[FindingKind, ...] = (
     "near_limit",
@@ -64,10 +63,17 @@ class Checked:
         plan: with `verified` filled in for each hole that has a motion; certificates are not proven again here, and
             are as they were.
         wrong: what the file states otherwise than it is found, one error each.
+        further: the same of the further tools.
     """
 
     plan: Plan
     wrong: tuple[Finding, ...]
+    further: tuple[Checked, ...] = ()
+
+    @property
+    def as_stated(self) -> bool:
+        """Whether nothing is stated otherwise than it is found, of any tool."""
+        return not self.wrong and all(each.as_stated for each in self.further)
 
     def marked(self, *, rewritten: bool = False) -> Plan:
         """The plan with what is wrong among the failures of each hole's check, or among the findings without one.
@@ -86,7 +92,11 @@ class Checked:
                 hole = replace(hole, findings=hole.findings + found)
             holes.append(hole)
         of_all = tuple(finding for finding in wrong if finding.hole is None)
-        return replace(self.plan, holes=tuple(holes), findings=self.plan.findings + of_all)
+        further = tuple(
+            replace(each, plan=plan).marked(rewritten=rewritten)
+            for each, plan in zip(self.further, self.plan.further, strict=True)
+        )
+        return replace(self.plan, holes=tuple(holes), findings=self.plan.findings + of_all, further=further)
 
 
 def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int, int], None] | None = None) -> Checked:
@@ -114,7 +124,9 @@ def check_plan(stated: Plan, *, workers: int | None = 1, progress: Callable[[int
             if progress:
                 progress(len(holes), len(stated.holes))
     wrong += [_error(message, None) for message in _sequence_differs(stated, least if chosen else np.inf)]
-    return Checked(replace(stated, holes=tuple(holes)), tuple(wrong))
+    further = tuple(check_plan(each, workers=workers, progress=progress) for each in stated.further)
+    plan = replace(stated, holes=tuple(holes), further=tuple(each.plan for each in further))
+    return Checked(plan, tuple(wrong), further)
 
 
 class CheckedHole(NamedTuple):
@@ -211,7 +223,7 @@ def check_hole(
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
         unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), _but(again.findings, *_unknown(stated)))
-        return CheckedHole(None, (*differences, *unsaid_or_foreign))
+        return CheckedHole(None, (*stated.unlike, *differences, *unsaid_or_foreign))
     own = figures(robot, tool, settings, stated)
     answer = stated if own is None else own.answer
     # what is stated of the figures is compared below, so the check of the motion is given those that were found
@@ -249,6 +261,7 @@ def check_hole(
         outcome = replace(stated, verified=_comparable(stated.verified, verified, fails))
         differences += _fields_differ(robot, stated, outcome, digits)
     # of what is stated, too, where that is the same
+    differences += stated.unlike
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
     least = again.score if again.score is not None else stated.score
     return CheckedHole(replace(verified, subject=known), tuple(differences), least.travel if least else 0.0)
@@ -256,46 +269,19 @@ def check_hole(
 
 def _check_strokes(robot: Robot, tool: Tool, settings: Settings, stated: HolePlan) -> CheckedHole:
     """Check each stroke of a hole, and what they are said to come to together."""
-    again = plan(robot, tool, stated.hole, settings)
-    wrong: list[str] = []
-    depths = [stroke.answer.hole.depth for stroke in stated.strokes]
-    asked = stated.hole.drilled_by(settings.cycle).strokes(stated.hole.depth)
-    if len(depths) != len(asked) or not np.allclose(depths, asked, rtol=0, atol=PLACE):
-        wrong.append(
-            differ("strokes, depth_mm", [float(mm(each)) for each in depths], [float(mm(each)) for each in asked])
-        )
-    checked = [check_hole(robot, tool, settings, "given", stroke.answer, chosen=True) for stroke in stated.strokes]
-    wrong += [f"strokes[{n}].answer.{message}" for n, each in enumerate(checked) for message in each.wrong]
-    answers = [stroke.answer for stroke in stated.strokes]
-    found = strokes_together(robot, tool, settings, stated.hole, answers, ())
-    own = tuple(each for each in again.findings if each.kind in ("peck", "deepest"))
-    found = replace(
-        found, deepest=again.deepest, deepest_at_most=again.deepest_at_most, findings=(*own, *found.findings)
-    )
-    wrong += _fields_differ(robot, stated, found, dict)
-    wrong += findings_differ(_but(stated.findings, OF_A_PROOF), _but(found.findings, OF_A_PROOF))
-    for name, here, there in (
-        ("reversals", _reversals(found), _reversals(again)),
-        ("reversals_in_air", _in_air(found), _in_air(again)),
-    ):
-        if there < here:
-            wrong.append(f"{differ(name, here, there)} by searching again")
-            break
-    verified = [
-        replace(stroke, answer=replace(stroke.answer, verified=each.verified))
-        for stroke, each in zip(stated.strokes, checked, strict=True)
+    own = [check_hole(robot, tool, settings, "given", stroke.answer, chosen=True) for stroke in stated.strokes]
+    again, found = plan(robot, tool, stated.hole, settings), strokes_again(robot, tool, settings, stated)
+    wrong = [f"strokes[{n}].answer.{message}" for n, each in enumerate(own) for message in each.wrong]
+    found = with_findings_of(found, again)
+    wrong += [
+        *stated.unlike,
+        *strokes_differ(settings, stated, found, again),
+        *_fields_differ(robot, stated, found, dict),
     ]
-    whole = of_strokes(stated.hole, verified, cycle_time=stated.cycle_time)
+    wrong += findings_differ(_but(stated.findings, OF_A_PROOF), _but(found.findings, OF_A_PROOF))
+    checked = with_checks(stated, [each.verified for each in own])
     travel = 0.0 if stated.score is None else stated.score.travel
-    return CheckedHole(whole.verified, tuple(wrong), travel, tuple(verified))
-
-
-def _reversals(answer: HolePlan) -> int:
-    return 0 if answer.score is None else answer.score.reversals
-
-
-def _in_air(answer: HolePlan) -> int:
-    return sum(stroke.reversals_in_air for stroke in answer.strokes)
+    return CheckedHole(checked.verified, tuple(wrong), travel, checked.strokes)
 
 
 def _unknown(stated: HolePlan) -> tuple[FindingKind, ...]:

@@ -146,7 +146,12 @@ class State:
 
 
 def opened_job(job: Job) -> State:
-    """A job of which nothing is planned yet, its first hole selected."""
+    """A job of which nothing is planned yet, its first hole selected.
+
+    Raises:
+        InputError: it has several tools.
+    """
+    _refuse_several_tools(len(job.further) + 1)
     return State(job, selected=job.holes[0].id, caution=caution_of(job))
 
 
@@ -155,8 +160,19 @@ def caution_of(job: Job) -> str | None:
     return "\n".join((*(finding.message for finding in (*likely_mistakes(job), *job.said)), *job.notes)) or None
 
 
+def _refuse_several_tools(count: int) -> None:
+    if count > 1:
+        accepted = "one of one tool; the command line plans, checks and exports this one"
+        raise InputError(f"is for {count} tools, and the page shows one", where="tools", accepted=accepted)
+
+
 def opened_plan(plan: Plan) -> State:
-    """A plan with its answers, its first hole selected."""
+    """A plan with its answers, its first hole selected.
+
+    Raises:
+        InputError: it has several tools.
+    """
+    _refuse_several_tools(len(plan.further) + 1)
     holes = tuple(answer.hole for answer in plan.holes)
     job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})
