@@ -12,6 +12,7 @@ from zerorev.planning.job import plan_job
 from zerorev.program.as_exported import as_exported
 from zerorev.program.export import export
 from zerorev.program.krl.dialect import KRL
+from zerorev.program.neutral import build_program
 from zerorev.verify.certificate.program import certify_program
 
 JOB = {
@@ -48,6 +49,27 @@ class TestTheLastOfTheWayIn:
         program = KRL.read([replace(export(plan, version="x").files[0], text=text)])
         (hole,) = certify_program(plan, program, as_exported(plan, program, KRL)).holes
         assert hole.certificate.verdict == "refuted"
+
+    def test_the_plan_says_the_same_of_speeds_as_the_export(self, job):
+        """A joint that is too slow for the plunge, but not on the last of the way in, and the other way round."""
+        for feeds, part in (((60, 3), "the plunge at a feed of 60"), ((3, 60), "the plunge at a feed of 60")):
+            asked = job(breakthrough={"last_mm": 8, "feed_mm_s": feeds[1]}, feed_mm_s={"plunge": feeds[0]})
+            limits = replace(asked.robot.limits, speed=np.deg2rad(np.full(6, 22.0)))
+            slow = replace(asked, robot=replace(asked.robot, limits=limits))
+            plan = plan_job(slow)
+            said = [each.message for each in plan.holes[0].findings if each.kind == "joint_speed"]
+            with pytest.raises(NotExportableError) as refused:
+                export(plan, version="x")
+            assert said
+            assert all(message in str(refused.value) for message in said)
+            assert sum(part in message for message in said) == 1
+
+    def test_the_time_of_the_plan_is_that_of_the_program(self, job):
+        for cycle in ({}, {"cycle": {"kind": "chip_break", "depth_mm": 4}}):
+            asked = job(breakthrough={"last_mm": 5, "feed_mm_s": 1.5}, approach_mm=10, **cycle)
+            plan = plan_job(asked)
+            (hole,) = build_program(plan).holes
+            assert plan.holes[0].cycle_time == pytest.approx(sum(move.time for move in hole.moves), rel=1e-9)
 
     def test_takes_its_time(self, job):
         slow = plan_job(job(breakthrough={"last_mm": 3, "feed_mm_s": 1.5}))

@@ -10,7 +10,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
-from zerorev.model.plan import Baseline, HolePlan, Motion
+from zerorev.model.plan import Baseline, Corner, HolePlan, Motion
 from zerorev.model.profile import Profile
 from zerorev.motion.criteria import measure
 from zerorev.motion.critical import critical
@@ -23,6 +23,7 @@ from zerorev.planning.load_findings import load_findings
 from zerorev.planning.tool_turn import hole_turn
 from zerorev.planning.why_none import why_infeasible
 from zerorev.program.joint_speeds import pieces_of, too_fast
+from zerorev.program.stroke_points import moves_of
 from zerorev.program.ways import Way
 from zerorev.search.rank import Candidate
 from zerorev.verify.check import verify_hole
@@ -52,10 +53,11 @@ def answered(
         lost_motion=lost_motion_of(drilling, best.profile, best.branch, settings.thrust),
     )
     assert answer.motion is not None
+    corner = corner_of(drilling, settings, answer.motion)
     answer = replace(
         answer,
-        corner=corner_of(drilling, settings, answer.motion),
-        cycle_time=cycle_time(drilling, settings, answer.motion),
+        corner=corner,
+        cycle_time=cycle_time(drilling, settings, answer.motion, corner),
         feeds=(settings.feed_plunge, settings.feed_retract),
     )
     answer = replace(answer, verified=verify_hole(robot, tool, settings, answer))
@@ -83,7 +85,7 @@ def with_another_motion(drilling: Drilling, settings: Settings, answer: HolePlan
     return replace(again, findings=(*motion_findings(drilling, settings, again), *others))
 
 
-def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
+def cycle_time(drilling: Drilling, settings: Settings, motion: Motion, corner: Corner) -> float:
     """Time of the hole's own moves at their feeds [s], from the approach to the retract, and of the dwell.
 
     What speeding up and stopping take is left out.
@@ -92,16 +94,11 @@ def cycle_time(drilling: Drilling, settings: Settings, motion: Motion) -> float:
         drilling: what is drilled.
         settings: with the feeds.
         motion: of the hole.
+        corner: how it turns round.
     """
-    profile, way = motion.profile, Way.of(drilling, motion, settings)
-    slow = min(settings.breakthrough_length - float(profile.standoff.min()), float(profile.standoff[0]))
-    slow = slow if settings.breakthrough_length > 0 and settings.breakthrough_feed is not None else 0.0
-    inwards = way.lead_in.length + float(profile.distance[profile.corner]) - slow
-    outwards = float(profile.distance[-1] - profile.distance[profile.corner])
-    in_the_air = way.approach.length + way.retract.length
-    last = slow / settings.feed_inwards(0.0)
-    moving = inwards / settings.feed_plunge + last + (outwards + in_the_air) / settings.feed_retract
-    return moving + settings.of(drilling.hole).cycle.dwell
+    way, own = Way.of(drilling, motion, settings), settings.of(drilling.hole)
+    moves = moves_of(own, motion, corner, way)
+    return sum(abs(end.standoff - begin.standoff) / feed for begin, end, feed in moves) + own.cycle.dwell
 
 
 def _baseline(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Baseline | None:
@@ -147,7 +144,7 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     found += load_findings(drilling, settings, answer)
     found += corner_findings(settings, answer)
     # export refuses it; here it is known while the feed can still be chosen
-    found += too_fast(drilling, answer.motion.branch, pieces_of(settings, answer.motion), "warning")
+    found += too_fast(drilling, answer.motion.branch, pieces_of(settings, answer.motion, answer.corner, way), "warning")
     found += countersink_findings(settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)

@@ -228,6 +228,8 @@ def check_hole(
     answer = stated if own is None else own.answer
     # what is stated of the figures is compared below, so the check of the motion is given those that were found
     verified = verify_hole(robot, tool, settings, answer)
+    drilling = Drilling(robot, tool, stated.hole, settings.limit_margin)
+    corner = corner_of(drilling, settings, stated.motion)
     found = replace(
         again,
         hole=stated.hole,
@@ -239,12 +241,11 @@ def check_hole(
         critical_rates=answer.critical_rates,
         measures=answer.measures,
         lost_motion=answer.lost_motion,
-        corner=corner_of(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated.motion),
+        corner=corner,
         verified=stated.verified,
-        cycle_time=cycle_time(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated.motion),
+        cycle_time=cycle_time(drilling, settings, stated.motion, corner),
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
     )
-    drilling = Drilling(robot, tool, stated.hole, settings.limit_margin)
     searched = Counter(again.findings) - Counter(motion_findings(drilling, settings, again) if again.motion else ())
     said = [*motion_findings(drilling, settings, replace(found, verified=verified)), *searched.elements()]
     digits = cache(partial(_slack, robot, tool, settings, stated, own))

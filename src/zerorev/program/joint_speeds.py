@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from zerorev.model.finding import Finding, Level
-from zerorev.model.plan import Motion
+from zerorev.model.plan import Corner, Motion
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import outward_rates
+from zerorev.program.stroke_points import moves_of
+from zerorev.program.ways import Way
 
 __all__ = ["Piece", "pieces_of", "too_fast"]
 
@@ -35,23 +37,18 @@ class Piece(NamedTuple):
     feed: float
 
 
-def pieces_of(settings: Settings, motion: Motion) -> list[Piece]:
-    """The pieces of a motion with their feeds.
+def pieces_of(settings: Settings, motion: Motion, corner: Corner | None, way: Way) -> list[Piece]:
+    """The pieces of a hole's own moves with their feeds, as a program has them.
 
     Args:
-        settings: with the feeds.
-        motion: of a hole.
+        settings: of the hole, with the feeds.
+        motion: of the hole.
+        corner: how it turns round.
+        way: to the motion and away from it.
     """
-    profile = motion.profile
-    points = list(zip(profile.standoff.tolist(), profile.psi.tolist(), strict=True))
     return [
-        Piece(
-            "plunge" if k < profile.corner else "retract",
-            points[k],
-            points[k + 1],
-            settings.feed_plunge if k < profile.corner else settings.feed_retract,
-        )
-        for k in range(len(points) - 1)
+        Piece(point.leg, (before.standoff, before.psi), (point.standoff, point.psi), feed)
+        for before, point, feed in moves_of(settings, motion, corner, way)
     ]
 
 

@@ -25,7 +25,8 @@ from zerorev.motion.kinematics import tcp_pose
 from zerorev.program.between import moves_between
 from zerorev.program.plan_mark import plan_mark
 from zerorev.program.refusals import left_out, refusals
-from zerorev.program.waypoints import Leg, Waypoint, waypoints, with_blends
+from zerorev.program.stroke_points import feed_of, points_of
+from zerorev.program.waypoints import Leg, Waypoint
 from zerorev.program.ways import Stop, stop_of
 
 __all__ = ["HoleProgram", "Move", "Point", "Program", "build_program", "split"]
@@ -247,18 +248,8 @@ def _between(plan: Plan, stops: Sequence[Stop]) -> tuple[list[Array], Array]:
 def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HoleProgram:
     motion, settings = hole.motion, plan.settings.of(hole.hole)
     assert motion is not None
-    lead_in, approach, retract = stop.way.lead_in, stop.way.approach, stop.way.retract
-    reach = hole.corner.reach if hole.corner else 0.0
-    last = settings.breakthrough_length if settings.breakthrough_feed is not None else 0.0
-    points, corner = waypoints(motion.profile, lead_in.length, reach, last)
-    points = with_blends(points, corner, settings, stop=hole.corner is not None and hole.corner.kind == "stop")
-    if approach.length > 0:
-        ahead = replace(points[0], standoff=points[0].standoff + approach.length)
-        points = (ahead, replace(points[0], leg="approach"), *points[1:])
-        corner += 1
-    if retract.length > 0:
-        out = points[-1].standoff + retract.length
-        points = (*points, Waypoint(out, points[-1].psi, "depart", "retracted"))
+    lead_in, approach = stop.way.lead_in, stop.way.approach
+    points, corner = points_of(settings, motion, hole.corner, stop.way)
     T_part_base = np.asarray(np.linalg.inv(plan.T_base_part), dtype=np.float64)
     joints = _joints(Drilling.of(plan, hole.hole), motion.branch, points, approach.joints)
     ends = [
@@ -269,7 +260,7 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         Move(
             end,
             abs(point.standoff - before.standoff),
-            _feed(settings, before, point),
+            feed_of(settings, before, point),
             point.blend,
             point.leg,
             point.comment,
@@ -289,12 +280,6 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         corner=corner - 1,
         reversals_per_joint=hole.score.reversals_per_joint if hole.score else (0,) * 6,
     )
-
-
-def _feed(settings: Settings, before: Waypoint, point: Waypoint) -> float:
-    """Of the move from one point to the next [m/s]."""
-    inwards = point.leg in ("lead-in", "plunge")
-    return settings.feed_inwards(max(before.standoff, point.standoff)) if inwards else settings.feed_retract
 
 
 def _joints(drilling: Drilling, branch: int, points: Sequence[Waypoint], first: Array) -> Array:
