@@ -97,17 +97,25 @@ def test_cells_of_holes_that_break_chips_are_replanned_and_verified(quantity, ro
     settings = replace(FREE, legs="straight", cycle=Cycle("chip_break", 5e-3, 0.3e-3))
     question = Question(robot, tool, quantity, settings, depth=None if quantity == "deepest" else 0.03)
     found = mapped(question, tmp_path)
-    assert question_of(found) == question
+    assert question_of(found).settings == settings
+    answered = 0
     for at in cells(found):
         hole = hole_of(found, **at)
+        if hole.profile is None:
+            continue
         assert len(hole.profile.turns) == 1 + 2 * len(settings.cycle.breaks(hole.depth))
         answer = plan(robot, tool, hole, settings)
         assert answer.verified.passed
+        answered += 1
+        if quantity == "fewest_reversals":
+            assert int(found["reversals"].isel(at)) == answer.score.reversals
+            continue
         assert answer.score.reversals == 0
         if quantity == "deepest":
-            assert float(found["deepest_mm"].isel(at)) == hole.depth * 1e3 <= answer.deepest * 1e3
-        elif quantity == "least_travel":
+            assert float(found["deepest_mm"].isel(at)) == hole.depth * 1e3 <= answer.deepest * 1e3 * (1 + 1e-12)
+        else:
             assert float(found["travel_deg"].isel(at)) == pytest.approx(np.rad2deg(answer.score.travel), abs=1e-6)
+    assert answered >= 4
 
 
 def test_a_question_that_knows_no_cycle_is_refused(robot, tool):
