@@ -7,15 +7,18 @@ from dataclasses import fields
 from typing import Any
 
 from zerorev.errors import InputError
+from zerorev.files.cad.as_listed import Asked, cad_holes, read_cad
+from zerorev.files.cad.listed_csv import csv_of
 from zerorev.files.cell_file import cell_from_text
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json
 from zerorev.files.other_kinds import is_plan
 from zerorev.files.text import json_text
+from zerorev.files.validation import inside
 from zerorev.model.job import Job
 from zerorev.model.plan import Plan
 from zerorev.model.ranges import Cell
 
-__all__ = ["cut", "job_written", "parsed", "pieces", "plan_written", "read", "read_cell", "whole"]
+__all__ = ["cut", "job_written", "parsed", "pieces", "plan_written", "read", "read_cad_file", "read_cell", "whole"]
 
 HOLES = 200  # of a piece
 BYTES = 2**20  # of a piece
@@ -75,6 +78,23 @@ def read_cell(given: Iterator[Any]) -> Iterator[Cell]:
     """
     name = next(given)
     yield cell_from_text(_text(given, name, "a cell file (YAML)"), name)
+
+
+def read_cad_file(given: Iterator[Any]) -> Iterator[Any]:
+    """From a CAD file's name, the unit of its numbers or None, a point of the robot [mm], and its content in bytes.
+
+    What comes of them is its holes as a table that a person looks through and edits, and what was assumed, in words.
+
+    Raises:
+        InputError: not a CAD file, or one that cannot be used.
+    """
+    name, unit, robot = next(given), next(given), next(given)
+    content = b"".join(given)
+    with inside(name):
+        asked = Asked(unit=unit)
+        listed = cad_holes(read_cad(content, name, asked, here=True), asked, robot)
+    yield csv_of(listed)
+    yield [*(finding.message for finding in listed.said), *listed.notes]
 
 
 def _text(given: Iterator[bytes], name: str, accepted: str) -> str:

@@ -10,10 +10,10 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.cad.chosen import ALL, SIDE, chosen, unlikely_unit
-from zerorev.files.cad.dxf import dxf_holes
+from zerorev.files.cad.dxf import dxf_holes, found_in_dxf
 from zerorev.files.cad.found import BLIND, COUNTERBORED, COUNTERSUNK, FoundHole, FoundHoles
 from zerorev.files.cad.select_form import SelectForm
-from zerorev.files.cad.step import step_holes
+from zerorev.files.cad.step import found_in_step, step_holes
 from zerorev.files.cad.step_holes import TIP
 from zerorev.files.hole_meaning import Meaning, as_in_a_job
 from zerorev.files.schema import HoleForm, JobFile
@@ -24,9 +24,10 @@ from zerorev.model.finding import Finding
 from zerorev.model.plan import named_holes
 from zerorev.model.robot import Robot
 
-__all__ = ["Asked", "CadHoles", "asked_of", "cad_holes", "is_cad", "read_cad", "robot_in"]
+__all__ = ["ENDINGS", "Asked", "CadHoles", "asked_of", "cad_holes", "is_cad", "read_cad", "robot_in"]
 
 STEP, DXF = (".step", ".stp"), (".dxf",)
+ENDINGS = STEP + DXF
 OF_A_TABLE = ("columns", "decimal", "normals", "point")
 
 
@@ -68,7 +69,7 @@ class CadHoles:
 
 def is_cad(name: str | Path) -> bool:
     """Whether a file's name says that it is a CAD file with holes: STEP or DXF."""
-    return Path(name).suffix.casefold() in STEP + DXF
+    return Path(name).suffix.casefold() in ENDINGS
 
 
 def asked_of(form: JobFile) -> Asked:
@@ -87,13 +88,14 @@ def asked_of(form: JobFile) -> Asked:
     return Asked(form.select or ALL, form.unit, form.depth_mm, form.breakthrough_mm, form.branch)
 
 
-def read_cad(content: bytes, name: str, asked: Asked) -> FoundHoles:
+def read_cad(content: bytes, name: str, asked: Asked, *, here: bool = False) -> FoundHoles:
     """All holes of a CAD file, found in a process of its own.
 
     Args:
         content: of the file.
         name: of the file, whose ending says which kind it is.
         asked: what the user says.
+        here: in this process, which is one of its own already.
 
     Raises:
         InputError: as `step_holes` and `dxf_holes`; what the user says goes with another kind of file.
@@ -103,7 +105,9 @@ def read_cad(content: bytes, name: str, asked: Asked) -> FoundHoles:
         if getattr(select, key) is not None:
             other = "a STEP file" if drawing else "a DXF file"
             raise InputError(f"goes with {other}", where=f"select.{key}", accepted=f"{other}; or without this key")
-    return dxf_holes(content, asked.unit) if drawing else step_holes(content, asked.unit, select.face_mm or ())
+    if drawing:
+        return (found_in_dxf if here else dxf_holes)(content, asked.unit)
+    return (found_in_step if here else step_holes)(content, asked.unit, select.face_mm or ())
 
 
 def robot_in(T_base_part: Array, robot: Robot) -> Array:

@@ -67,7 +67,6 @@ def dxf_holes(content: bytes, unit: Unit | None = None) -> FoundHoles:
     Raises:
         InputError: the extra `cad` is not installed; not a DXF file, damaged, without a unit, too large.
     """
-    need_ezdxf()
     (found,) = Apart(_holes).results([content, unit])
     assert isinstance(found, FoundHoles)
     return found
@@ -75,6 +74,7 @@ def dxf_holes(content: bytes, unit: Unit | None = None) -> FoundHoles:
 
 def found_in_dxf(content: bytes, unit: Unit | None) -> FoundHoles:
     """As `dxf_holes` in this process."""
+    need_ezdxf()
     _check_whole(content)
     drawing = _drawing(content)
     stated, scale = _unit(int(drawing.header.get("$INSUNITS", 0)), unit)

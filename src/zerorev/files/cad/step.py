@@ -45,8 +45,6 @@ def step_holes(content: bytes, unit: Unit | None = None, places: Sequence[Sequen
     Raises:
         InputError: the extra `cad` is not installed; not a STEP file, cut short, without a solid, too large.
     """
-    need_ocp()
-    check_step(content)
     (found,) = Apart(_holes).results([content, unit, list(places)])
     assert isinstance(found, FoundHoles)
     return found
@@ -89,6 +87,8 @@ def check_step(content: bytes) -> None:
 
 def found_in_step(content: bytes, unit: Unit | None, places: Sequence[Sequence[float]]) -> FoundHoles:
     """As `step_holes` in this process: only where it may crash."""
+    need_ocp()
+    check_step(content)
     from zerorev.files.cad import occ
     from zerorev.files.cad.step_holes import holes_of
 

@@ -1,19 +1,22 @@
-"""Holes from a spreadsheet: pasted or out of a CSV file, shown row by row, and taken only when the user says so."""
+"""Holes from a table: pasted, out of a CSV or a CAD file, shown row by row, and taken only when the user says so."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import partial
 from html import escape
+from typing import Any
 
 from nicegui import background_tasks, events, ui
 
 from zerorev.errors import InputError
+from zerorev.files.cad.as_listed import ENDINGS, robot_in
 from zerorev.files.hole_list import MOST_PASTED, HoleList, ListedHole, in_base_frame, read_hole_list, text_of_list
 from zerorev.files.hole_meaning import Meaning
 from zerorev.files.table_layout import COLUMNS, KNOWN, Given
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job
+from zerorev.web import files
 from zerorev.web.aside import aside
 from zerorev.web.job_edits import with_holes
 from zerorev.web.session import Session
@@ -21,6 +24,7 @@ from zerorev.web.throttle import throttled
 from zerorev.web.views.fields import Fields, ends, form, number, said
 from zerorev.web.views.hole_form import reference_of
 from zerorev.web.views.opener import file_picker
+from zerorev.web.views.waiting import do_apart
 
 __all__ = ["paste_dialog"]
 
@@ -42,14 +46,15 @@ def paste_dialog(session: Session) -> Callable[[], None]:
     Args:
         session: into whose job they go.
     """
-    dialog, card, _ = form("Holes from a spreadsheet", "paste-form", wide=True)
+    dialog, card, _ = form("Holes from a table or a model", "paste-form", wide=True)
     good: list[Hole] = []
     newest: object = None  # of what was pasted, that which is being understood
     with card:
         ui.label(
             f"Copy rows there and paste them here, with the cells {', '.join(COLUMNS)}, or with a header that names "
             "them. Tabs, semicolons or commas between cells; decimal point or comma. Below they stand as understood: "
-            "bottom of the stroke [mm], direction into the material, stroke [mm]."
+            "bottom of the stroke [mm], direction into the material, stroke [mm]. The holes of a STEP or DXF file "
+            "become such rows, to be looked through and edited."
         ).classes("zr-muted")
         pasted = (
             ui.textarea(placeholder=EXAMPLE)
@@ -66,7 +71,11 @@ def paste_dialog(session: Session) -> Callable[[], None]:
             csv = ui.button("Open a CSV file …", icon="folder_open").props(
                 'flat no-caps dense data-testid="paste-file"'
             )
+            model = ui.button("Open a STEP or DXF file …", icon="view_in_ar").props(
+                'flat no-caps dense data-testid="paste-cad"'
+            )
             verdict = ui.label().props('role="status" data-testid="paste-verdict"')
+        assumed = ui.label().classes("zr-muted zr-lines").props('data-testid="paste-assumed"')
         preview = ui.html(sanitize=False).classes("zr-sheet-box").props('tabindex="0" aria-label="rows as understood"')
         preview.props('data-testid="paste-rows"')
 
@@ -125,14 +134,31 @@ def paste_dialog(session: Session) -> Callable[[], None]:
         except InputError as error:
             verdict.set_text(f"{event.file.name} {said(error)}")
 
+    async def read_model(event: events.UploadEventArguments) -> None:
+        job, name, unit = session.state.job, event.file.name, fields["unit",].value
+        if job is None:
+            return
+        robot = robot_in(job.T_base_part, job.robot)
+
+        def listed(found: list[Any]) -> None:
+            if not dialog.is_deleted:
+                fields["unit",].set_value(None)  # the list is in millimetres
+                pasted.set_value(found[0])
+                assumed.set_text("\n".join(found[1]))
+
+        given = [name, unit, robot, *files.cut(await event.file.read())]
+        do_apart(f"Finding the holes of {name} …", files.read_cad_file, given, list, listed)
+
     with card:
         take = ends(dialog, "Take", taken)
+        file_picker(model, read_model, ",".join(ENDINGS), verdict.set_text)
         file_picker(csv, read, ".csv,.txt,.tsv", verdict.set_text, LARGEST)
     for field in (pasted, *fields.values()):
         field.on_value_change(throttled(judge))
 
     def opened() -> None:
         pasted.set_value("")
+        assumed.set_text("")
         judge()
         dialog.open()
 
