@@ -14,7 +14,7 @@ from zerorev.kernels import tour
 from zerorev.model._arrays import rotation_rpy, transform
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
-from zerorev.planning.sequence import Member, _chosen, moves_of
+from zerorev.planning.sequence import moves_of
 from zerorev.search.members import members
 from zerorev.search.optimum import best_motion
 
@@ -133,16 +133,6 @@ def test_one_posture_for_a_share_of_the_travel(planned, alone):
             assert one.verified.passed
     turned = [sum(np.abs(np.diff(move.joints, axis=0)).sum() for move in each.transitions) for each in (planned, alone)]
     assert turned[0] < turned[1] / 4
-
-
-def test_the_budget_counts_from_the_planned_motions(panel):
-    """Not from those of least travel: where another objective decides, the planned motion is not among them."""
-    joints = np.zeros((3, 6))
-    planned = Member(None, 0, joints, joints[0], joints[0], travel=2.0, time=0.0)
-    shorter = Member(None, 4, joints, joints[0], joints[0], travel=1.0, time=0.0)
-    few = replace(panel, holes=panel.holes[:2])
-    _, chosen = _chosen(few, [(planned, shorter), (planned,)])
-    assert chosen == {0: planned, 1: planned}  # one posture within the budget of 1.1 * 4, not of 1.1 * 3
 
 
 def test_the_moves_lead_from_hole_to_hole(planned):
