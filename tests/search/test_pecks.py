@@ -269,3 +269,13 @@ def test_no_stroke_is_left_that_reverses_where_one_without_is_known():
 def test_a_cycle_that_is_none_is_one_clear_error(cycle, said):
     with pytest.raises(InputError, match=said):
         Cycle(**cycle).strokes(50e-3)
+
+
+def test_the_deepest_stroke_is_that_of_the_stroke_that_goes_all_the_way():
+    asked = job(1)
+    pecking_, plain = (plan_job(each, strokes="deepest").holes[0] for each in (asked, replace(
+        asked, settings=replace(asked.settings, cycle=Cycle())
+    )))  # fmt: skip
+    assert pecking_.deepest == plain.deepest > 80e-3
+    assert pecking_.verified.passed
+    assert pecking_.strokes == ()

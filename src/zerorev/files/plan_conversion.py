@@ -239,6 +239,8 @@ def _strokes_from(form: PlanHole, hole: Hole, where: str) -> dict[str, Any]:
         return {}
     strokes, unlike = [], list[str]()
     of_the_first = [each for each in form.strokes if getattr(each, "tool") == 0]  # noqa: B009
+    if not of_the_first:
+        raise InputError("is that of a further tool", where="strokes[0].tool", accepted="0, the first one")
     for n, each in enumerate(of_the_first):
         at, own = f"strokes[{n}]", each.answer or form
         if (each.answer is None) != (len(of_the_first) == 1):

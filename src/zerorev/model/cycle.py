@@ -122,6 +122,11 @@ class Cycle:
         whole = int(depth / self.depth * (1 - 1e-9))
         return (*(self.depth * n for n in range(1, whole + 1)), depth)
 
+    @property
+    def of_one_stroke(self) -> Cycle:
+        """How the deepest of its strokes is drilled; itself where it has no others."""
+        return Cycle(dwell=self.dwell) if self.kind == "peck" else self
+
     def _check_count(self, depth: float) -> None:
         assert self.depth is not None
         if depth / self.depth > MOST_PECKS:

@@ -102,9 +102,12 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
             `min_rate_rule`.
 
     Returns:
-        the motion as `plan` has it, its hole as deep as it goes. Where every stroke has a reversal, however short, the
-        status is `infeasible` and the hole is as it was.
+        the motion as `plan` has it, its hole as deep as it goes; of a hole that is drilled in several strokes that of
+        one, which goes all the way. Where every stroke has a reversal, however short, the status is `infeasible` and
+        the hole is as it was.
     """
+    cycle = hole.drilled_by((settings or Settings()).cycle)
+    hole = hole if cycle.of_one_stroke is cycle else replace(hole, cycle=cycle.of_one_stroke)
     settings = (settings or Settings()).of(hole)
     drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"deepest stroke with {settings.legs} legs")

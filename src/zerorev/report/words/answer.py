@@ -205,5 +205,5 @@ def how_deep(settings: Settings) -> str:
         else ""
     )
     spin = "spin periodic" if settings.psi_bound is None else f"spin within +-{np.rad2deg(settings.psi_bound):g} deg"
-    chips = "" if settings.cycle.kind == "single" else "; breaking chips: the deepest found, not proven"
+    chips = "" if settings.cycle.kind != "chip_break" else "; breaking chips: the deepest found, not proven"
     return f"{settings.legs} legs{twist}; {rate or 'no motion threshold'}; {spin}{chips}"
