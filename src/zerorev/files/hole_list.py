@@ -45,6 +45,7 @@ __all__ = [
 ]  # fmt: skip
 
 MOST_PASTED = 20_000  # rows of a table that is pasted
+ALONG_Z = tuple(zip(DIRECTION, (0.0, 0.0, 1.0), strict=True))
 MOST_SHOWN = 20  # rows that a message names
 MARKS = (
     (codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF32_LE, "utf-32"), (codecs.BOM_UTF32_BE, "utf-32"),
@@ -118,6 +119,7 @@ def read_hole_list(
     meaning: Meaning,
     *,
     depth_needed: bool = True,
+    directions: bool = True,
     most: int = MAX_ROWS,
     taken: Collection[str] = (),
 ) -> HoleList:
@@ -128,6 +130,7 @@ def read_hole_list(
         given: what a user says of its columns.
         meaning: what its points and directions are.
         depth_needed: whether each hole must have its depth.
+        directions: whether its columns say where the drill points; else all point along Z, and points stay as they are.
         most: rows.
         taken: ids that other holes have.
 
@@ -136,13 +139,14 @@ def read_hole_list(
     """
     numbered = enumerate(table_lines(text.removeprefix("\ufeff"), ""), 1)
     lines = [(number, line) for number, line in numbered if line.strip("\t;, \xa0")]
-    layout = layout_of(lines, given, depth_needed=depth_needed and meaning.depth_mm is None)
+    needed = depth_needed and meaning.depth_mm is None
+    layout = layout_of(lines, given, depth_needed=needed, directions=directions)
     found, comments = _rows(layout)
     if not found:
         raise InputError("no holes", accepted="one row or more below the header")
     if len(found) > most:
         raise InputError(f"{len(found):,} rows", accepted=f"{most:,} at most")
-    meaning = _as_pointed(meaning, layout)
+    meaning = _as_pointed(meaning, layout) if directions else AS_IN_A_JOB
     decimal = given.decimal or _decimal(layout, found)
     rows, seen = [], set(taken)
     for row in found:
@@ -277,7 +281,10 @@ def _data(row: ListedHole, layout: Layout, decimal: Decimal, meaning: Meaning) -
         data |= {"target_mm": bottom, "direction": along, "depth_mm": math.hypot(*along)}
     else:
         names = ENTRY if layout.points == "entry" else POINT
-        data |= {"target_mm": [values[name] for name in names], "direction": [values[name] for name in DIRECTION]}
+        data |= {
+            "target_mm": [values[name] for name in names],
+            "direction": [values.get(name, z) for name, z in ALONG_Z],
+        }
         data |= {"depth_mm": values["depth_mm"]} if "depth_mm" in values else {}
     if "branch" in values:
         branch = values["branch"]

@@ -13,7 +13,9 @@ from typing import Any
 from zerorev.errors import InputError
 from zerorev.files.cad.as_listed import Asked, CadHoles, cad_holes, is_cad, read_cad
 from zerorev.files.cad.chosen import ALL
+from zerorev.files.cad.listed_points import points_on
 from zerorev.files.cad.select_form import SelectForm
+from zerorev.files.cad.stl import surface_of
 from zerorev.files.conversion import frame_from, robot_from, settings_from, tool_from, with_feeds
 from zerorev.files.job_holes import cad_holes_of, holes_of
 from zerorev.files.named import named_document, shipped
@@ -45,6 +47,7 @@ __all__ = [
     "read_cad_holes",
     "read_job",
     "read_plan",
+    "read_points",
     "read_robot",
     "read_tool",
     "robot_names",
@@ -175,6 +178,22 @@ def read_cad_holes(path: str | Path, *, select: str | None = None, unit: Unit | 
     with inside(document.where(("robot",))):
         robot = read_robot(job.robot, path.parent)
     return cad_holes_of(job.model_copy(update=given), document, path.parent, robot, frame_from(job.part_frame))
+
+
+def read_points(path: str | Path, surface: str | Path, *, unit: Unit | None = None) -> CadHoles:
+    """The holes of a table of points, drilled against the normals of a part's surface.
+
+    Args:
+        path: of a CSV file.
+        surface: path of the part: a mesh, in millimetres, or a STEP file.
+        unit: of the lengths of the table; None: as it says, or mm.
+
+    Raises:
+        InputError: as `surface_of` and `points_on`.
+    """
+    vertices, faces = surface_of(Path(surface))
+    with inside(str(path)):
+        return points_on(read_bytes(Path(path), "a CSV file of points"), vertices, faces, unit)
 
 
 def read_plan(path: str | Path) -> Plan:

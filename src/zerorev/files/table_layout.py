@@ -111,13 +111,14 @@ def looks_like_hole(line: str) -> bool:
     return False
 
 
-def layout_of(lines: list[Line], given: Given, *, depth_needed: bool) -> Layout:
+def layout_of(lines: list[Line], given: Given, *, depth_needed: bool, directions: bool = True) -> Layout:
     """How a table is laid out.
 
     Args:
         lines: that are not empty.
         given: what a user says of it.
         depth_needed: whether each hole needs a cell for its depth.
+        directions: whether each needs those for its direction.
 
     Raises:
         InputError: no header where one is needed; a column that is missing, stands twice or contradicts another; units
@@ -136,7 +137,7 @@ def layout_of(lines: list[Line], given: Given, *, depth_needed: bool) -> Layout:
     if twice := next((name for n, name in enumerate(names) if name and name in names[:n]), None):
         raise InputError(f"a column appears twice: {twice}", where=where, accepted=ACCEPTED)
     places = {name: n for n, name in enumerate(names) if name is not None}
-    points, used = _used(places, cells, where, depth_needed)
+    points, used = _used(places, cells, where, depth_needed, directions)
     rows = lines[at + 1 :]
     units = units_row(*_first_cells(rows, delimiter), {name: places[name] for name in used})
     rows = rows[1:] if units else rows
@@ -235,15 +236,15 @@ def _check_mapped(columns: Mapping[str, str], cells: list[str], where: str) -> N
 
 
 def _used(
-    places: Mapping[str, int], cells: list[str], where: str, depth_needed: bool
+    places: Mapping[str, int], cells: list[str], where: str, depth_needed: bool, directions: bool
 ) -> tuple[Literal["point", "entry", "both"], list[str]]:
     """Which columns say where holes are, and those that are used."""
     points: Literal["point", "entry", "both"] = "point"
-    needed: list[str] = ["id", *POINT, *DIRECTION]
+    needed: list[str] = ["id", *POINT, *(DIRECTION if directions else ())]
     if any(name in places for name in EXIT):
         points, needed = "both", ["id", *ENTRY, *EXIT]
     elif any(name in places for name in ENTRY):
-        points, needed = "entry", ["id", *ENTRY, *DIRECTION]
+        points, needed = "entry", ["id", *ENTRY, *(DIRECTION if directions else ())]
         if both := [name for name in POINT if name in places]:
             what = f"both {both[0]} and {next(name for name in ENTRY if name in places)}"
             raise InputError(what, where=where, accepted="one point and a direction, or entry and exit points")

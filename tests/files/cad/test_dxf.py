@@ -207,7 +207,7 @@ def test_hostile_names_are_made_visible():
 def test_a_missing_library_is_named_with_its_extra(monkeypatch):
     monkeypatch.setattr(needed, "find_spec", lambda name: None)
     with pytest.raises(InputError, match=r"ezdxf, which is not installed.*zerorev\[cad\]"):
-        dxf_holes(b"")
+        found_in_dxf(b"", None)
 
 
 def test_the_plane_of_the_test_is_as_it_says():

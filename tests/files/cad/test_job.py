@@ -235,3 +235,65 @@ def test_targets_are_the_bottoms(tmp_path):
     assert len(listed.forms) == 20
     for hole, form in zip(listed.holes, listed.forms, strict=True):
         assert np.allclose(np.array(form.target_mm), hole.entry + hole.depth * hole.direction)
+
+
+# --- points on a surface ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def dome(tmp_path):
+    """Part of a ball of 200 mm about the origin as STL, and a table of points on it; the last one at its rim."""
+    import trimesh
+
+    ball = trimesh.creation.uv_sphere(radius=200.0, count=[60, 60])
+    cap = trimesh.Trimesh(*_kept(ball.vertices, ball.faces, ball.triangles_center[:, 2] > 100))
+    cap.export(tmp_path / "dome.stl")
+    rng = np.random.default_rng(0)
+    places = rng.normal(0, 1, (20, 3)) * [1, 1, 0.3] + [0, 0, 2.5]
+    places *= 200 / np.linalg.norm(places, axis=1)[:, None]
+    rows = [f"P{n},{x!r},{y!r},{z!r},8" for n, (x, y, z) in enumerate(places.tolist(), 1)]
+    (tmp_path / "points.csv").write_text("\n".join(["id,x_mm,y_mm,z_mm,depth_mm", *rows]) + "\n")
+    return tmp_path, places
+
+
+def _kept(vertices, faces, some):
+    return vertices, faces[some]
+
+
+def test_points_are_drilled_against_the_normals(dome, capsys):
+    folder, places = dome
+    out, _ = run(capsys, folder / "points.csv", "--surface", folder / "dome.stl", "-o", folder / "holes.csv", "--json")
+    listed = yaml.safe_load(out)
+    for hole, place in zip(listed["holes"], places, strict=True):
+        direction = [hole[name] for name in "ijk"]
+        # 3 deg between the triangles of the ball: their normals are off by half of it in each of two directions
+        assert np.rad2deg(np.arccos(-place @ direction / 200)) < 3
+        assert [hole[f"entry_{name}_mm"] for name in "xyz"] == pytest.approx(place)
+        assert hole["depth_mm"] == 8
+    assert any("bend by more than 2 deg" in finding["message"] for finding in listed["findings"])
+    assert {finding["kind"] for finding in listed["findings"]} == {"normals"}
+    read = zr.read_job(job(folder, "holes.csv"))
+    assert len(read.holes) == 20
+    assert all(hole.depth == pytest.approx(8e-3) for hole in read.holes)
+
+
+def test_points_elsewhere_are_refused(dome, capsys):
+    folder, _ = dome
+    _, err = run(capsys, folder / "points.csv", "--surface", folder / "dome.stl", "--unit", "m", code=BAD_INPUT)
+    assert "names of its columns say mm" in err
+    (folder / "far.csv").write_text("id,x_mm,y_mm,z_mm\nA,0,0,200\nB,0,0,900\n")
+    _, err = run(capsys, folder / "far.csv", "--surface", folder / "dome.stl", code=BAD_INPUT)
+    assert "hole B: more than 20 mm from the surface" in err
+    for name in ("absent.stl", "points.csv", "far.png"):
+        _, err = run(capsys, folder / "points.csv", "--surface", folder / name, code=BAD_INPUT)
+        assert err.count("error: ") == 1
+
+
+def test_points_on_a_step_file(folder, tmp_path, capsys):
+    (tmp_path / "points.csv").write_text("id;x_mm;y_mm;z_mm\nA;10;10;12\nB;10;0,2;12\n")
+    out, _ = run(capsys, tmp_path / "points.csv", "--surface", folder / "plate.step", "--json")
+    listed = yaml.safe_load(out)
+    assert [[hole[name] for name in "ijk"] for hole in listed["holes"]] == [[0, 0, -1]] * 2
+    assert [hole["depth_mm"] for hole in listed["holes"]] == [None, None]
+    (finding,) = listed["findings"]
+    assert finding["message"].startswith("hole B: at an edge of the part")

@@ -98,8 +98,8 @@ class Solid:
         walls: that could be those of holes.
         points: of each edge of a wall [mm], by its number, shape (N, 3).
         beside: numbers of the faces of an edge, by its number.
-        edges: numbers of all edges of a face beside a wall, by its number.
-        outer: those of them that go round its outside.
+        rims: numbers of the edges at which a face meets others, by its number.
+        outer: those of its edges that go round its outside, of faces beside a wall.
         inside: whether a point [mm], shape (3,), lies in the material.
     """
 
@@ -107,6 +107,6 @@ class Solid:
     walls: tuple[Wall, ...]
     points: Mapping[int, Array]
     beside: Mapping[int, frozenset[int]]
-    edges: Mapping[int, frozenset[int]]
+    rims: Mapping[int, frozenset[int]]
     outer: Mapping[int, frozenset[int]]
     inside: Callable[[Array], bool]

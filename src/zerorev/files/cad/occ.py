@@ -210,8 +210,9 @@ def _solid(solid: Any, scale: float, numbers: range, name: str) -> Solid:
     for number in near:
         wire = BRepTools.OuterWire_s(faces[number])
         outer_of[number] = frozenset(known[edge.TShape()] for edge in _explored(wire, TopAbs_EDGE))
+    rims = {number: frozenset(each for each in found if beside[each] != {number}) for number, found in edges_of.items()}
     return Solid(
-        name, tuple(walls), points, {number: frozenset(found) for number, found in beside.items()}, edges_of, outer_of,
+        name, tuple(walls), points, {number: frozenset(found) for number, found in beside.items()}, rims, outer_of,
         lambda place: inside(place / scale),
     )  # fmt: skip
 

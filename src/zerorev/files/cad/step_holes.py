@@ -209,11 +209,6 @@ def _mouth(parts: Sequence[_Part], drilled: Sequence[_Part], radius: float, side
     return _Mouth(tuple(kinds), ", ".join(words))
 
 
-def _rim_of(solid: Solid, face: int) -> frozenset[int]:
-    """The edges at which a face meets others: without its own seam."""
-    return frozenset(edge for edge in solid.edges[face] if solid.beside[edge] != {face})
-
-
 def _bottom(solid: Solid, line: Wall, side: int, end: float, radius: float) -> float:
     """Where a closed end lies on the axis: beyond the wall, if it is rounded."""
     sign = 1.0 if side == HIGH else -1.0
@@ -246,9 +241,9 @@ def _end(solid: Solid, parts: Sequence[_Part], line: Wall, side: int, end: float
         and (((solid.points[edge] - line.point) @ line.axis).mean() > level) == (side == HIGH)
     }
     faces = frozenset(face for edge in rim for face in solid.beside[edge] - own)
-    if any(_rim_of(solid, face) <= rim for face in faces):
+    if any(solid.rims[face] <= rim for face in faces):
         return True, faces
-    if faces and all(not (solid.edges[face] & rim) & solid.outer[face] for face in faces):
+    if faces and all(not solid.rims[face] & rim & solid.outer[face] for face in faces):
         return False, faces
     beyond = line.point + (end + (BEYOND if side == HIGH else -BEYOND)) * line.axis
     return solid.inside(beyond), faces
