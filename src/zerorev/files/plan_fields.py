@@ -68,6 +68,9 @@ _CORNER = {
     "corner.reach_mm": Field("figure", DIGITS, 1e-6),  # it is cut where a tolerance is met
     "corner.off_axis_mm": Field("figure", 1e-4, 1e-8),
     "corner.tilt_deg": Field("figure", 1e-4, 1e-8),
+    "corner.dwell_s": Field("figure", DIGITS, 1e-9, optional=True),
+    "corner.spin_deg": Field("figure", DIGITS, 1e-8, optional=True),
+    "corner.spin_moves": Field("figure", optional=True),
 }
 
 

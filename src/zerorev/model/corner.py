@@ -10,6 +10,7 @@ from math import radians
 from typing import Literal, get_args
 
 from zerorev.errors import InputError
+from zerorev.model.cycle import Cycle
 
 __all__ = [
     "CONTROLLERS",
@@ -23,9 +24,10 @@ __all__ = [
     "turning_of",
 ]
 
-CornerKind = Literal["blend", "joint", "stop"]
+CornerKind = Literal["blend", "joint", "spin", "stop"]
 ControllerName = Literal["krl", "rapid", "tp", "urscript", "inform"]
 
+IN_ONE_GO = Cycle()
 MOST_TILT = math.radians(0.01)
 """Greatest angle of the tool against the drill axis on joint moves at the corner [rad]."""
 
@@ -71,7 +73,11 @@ CONTROLLERS: Mapping[str, Controller] = {
             ("kuka",),
             "blend",
             parabola=True,
-            refused={"joint": "the speed of a PTP is a whole percentage, too coarse for the feed of a drill"},
+            refused={
+                "joint": "the speed of a PTP is a whole percentage, too coarse for the feed of a drill",
+                "spin": "the speed of a PTP is a whole percentage, and a LIN that hardly moves the tip gives C_DIS no "
+                "distance to go by, so that nobody knows whether the joints would rest",
+            },
         ),
         Controller("rapid", "RAPID", "ABB", ("abb",), "joint"),
         Controller(
@@ -149,7 +155,12 @@ class Turning:
 
 
 def turning_of(
-    controller: str | None, corner: CornerKind | None, blend: float, measured: float | None, dwell: float = 0.0
+    controller: str | None,
+    corner: CornerKind | None,
+    blend: float,
+    measured: float | None,
+    cycle: Cycle = IN_ONE_GO,
+    creep: float = 0.0,
 ) -> Turning:
     """How the corner is passed.
 
@@ -161,18 +172,16 @@ def turning_of(
         corner: as asked for; None: as usual for the controller.
         blend: radius, or reach of the joint moves, as asked for [m]; 0 is a stop.
         measured: depth lost, as measured [m]; None: not measured.
-        dwell: for which the tool stands there [s].
+        cycle: says how long the tool dwells there, and whether it spins on.
+        creep: how far it creeps in where it spins on [m].
 
     Raises:
-        InputError: a stop with another kind, or a kind that is not offered for the controller.
+        InputError: a stop with another kind, a kind that is not offered for the controller, or that does not fit to a
+            dwell.
     """
     known = known_controller(controller)
-    if dwell > 0 and corner not in (None, "stop"):
-        raise InputError(
-            f"a corner of kind {corner} beside a dwell of {dwell:g} s: where the tool stands, nothing is blended",
-            where="corner", accepted="stop, or none; or dwell_s: 0",
-        )  # fmt: skip
-    kind = corner or ("stop" if blend == 0 or dwell > 0 else known.usual)
+    _refuse_dwell(corner, cycle)
+    kind = corner or ("spin" if cycle.moving else "stop" if blend == 0 or cycle.dwell > 0 else known.usual)
     if blend == 0 and kind != "stop":
         raise InputError(
             f"a corner of kind {kind} has no room in a blend of 0", where="corner", accepted="stop, or blend_mm above 0"
@@ -185,8 +194,8 @@ def turning_of(
         )
     if kind == "stop":
         return Turning(kind, 0.0, 0.0, 0.0, (0.0, 0.0), "an exact stop")
-    reach = blend if kind == "joint" else 0.0
-    radius = blend if kind == "blend" else known.share * reach
+    reach = blend if kind in ("joint", "spin") else 0.0
+    radius = blend if kind == "blend" else known.share * (creep if kind == "spin" else reach)
     if measured is not None:
         return Turning(kind, radius, reach, measured, (measured, measured), "as measured")
     if known.sized:
@@ -194,3 +203,31 @@ def turning_of(
         return Turning(kind, radius, reach, radius / 2, (0.0, radius / 2), law)
     law = "r/2, a parabolic blend over half of each joint move; how far the controller blends is not in the program"
     return Turning(kind, radius, reach, radius / 2, (0.0, reach), law)
+
+
+def _refuse_dwell(corner: CornerKind | None, cycle: Cycle) -> None:
+    """Refuse a kind of corner that does not fit to a dwell.
+
+    Raises:
+        InputError: it does not.
+    """
+    if corner == "spin" and cycle.dwell == 0:
+        raise InputError(
+            "the tool spins on at the target, but not for how long", where="corner",
+            accepted="cycle: {dwell_s: 0.2} beside it",
+        )  # fmt: skip
+    if cycle.moving and corner not in (None, "spin"):
+        raise InputError(
+            f"a corner of kind {corner} beside moving: true, with which the tool spins on there", where="corner",
+            accepted="spin, or none; or moving: false",
+        )  # fmt: skip
+    if cycle.dwell > 0 and corner not in (None, "stop", "spin"):
+        raise InputError(
+            f"a corner of kind {corner} beside a dwell of {cycle.dwell:g} s: where the tool stands, nothing is blended",
+            where="corner", accepted="stop, spin, or none; or dwell_s: 0",
+        )  # fmt: skip
+    if (corner == "spin" or cycle.moving) and cycle.kind == "peck":
+        raise InputError(
+            "the tool spins on at the target of a hole that is drilled in several strokes", where="cycle, moving",
+            accepted="kind: single or chip_break; or a dwell that stands",
+        )  # fmt: skip

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
-from zerorev.model.stated import Choice, Number, check, with_attributes
+from zerorev.model.stated import Choice, Number, Switch, check, with_attributes
 from zerorev.model.units import MM, S
 
 if TYPE_CHECKING:
@@ -49,9 +49,17 @@ class Cycle:
             S,
             least=0,
             to=LONGEST_DWELL,
-            note="In hundredths; it stands there, with all joints at rest",
+            note="In hundredths; it stands there, with all joints at rest, or spins on",
         ),
     ] = 0.0
+    moving: Annotated[
+        bool,
+        Switch(
+            "whether it spins on meanwhile, so that no joint rests",
+            off="the tool stands",
+            on="the tool spins on, and the corner is of kind spin",
+        ),
+    ] = False
 
     def __post_init__(self) -> None:
         """Check ranges, and that a depth is there where chips are broken or strokes are made."""
@@ -59,6 +67,10 @@ class Cycle:
         if abs(self.dwell * HUNDREDTHS - round(self.dwell * HUNDREDTHS)) > 1e-9:
             raise InputError(
                 f"a dwell of {self.dwell:g} s", where="cycle, dwell_s", accepted="hundredths of a second, e.g. 0.12"
+            )
+        if self.moving and self.dwell == 0:
+            raise InputError(
+                "spins on, but not for how long", where="cycle, moving", accepted="dwell_s beside it, e.g. 0.2"
             )
         if self.kind != "single" and self.depth is None:
             what = "breaks chips, but not how often" if self.kind == "chip_break" else "pecks, but not how deep"
@@ -82,7 +94,7 @@ class Cycle:
         if self.kind == "peck" and self.depth is not None:
             parts.append(f"strokes of {self.depth * 1e3:g} mm more each, out of the hole between them")
         if self.dwell:
-            parts.append(f"a dwell of {self.dwell:g} s at the target")
+            parts.append(f"a dwell of {self.dwell:g} s at the target{', spinning on' if self.moving else ''}")
         return ", ".join(parts) or "in one go"
 
     @property

@@ -145,7 +145,14 @@ class Corner:
 
     kind: Annotated[
         CornerKind,
-        Choice(words={"blend": "of straight moves", "joint": "of joint moves", "stop": "all joints rest"}),
+        Choice(
+            words={
+                "blend": "of straight moves",
+                "joint": "of joint moves",
+                "spin": "of joint moves, on which the tool spins on",
+                "stop": "all joints rest",
+            }
+        ),
     ]
     shortfall: Annotated[float, Figure("how far short of the programmed corner the tip turns back", MM, least=0)]
     interval: tuple[float, float]
@@ -153,6 +160,15 @@ class Corner:
     reach: Annotated[float, Figure("how far from the corner joint moves begin and end; 0: there are none", MM, least=0)]
     off_axis: Annotated[float, Figure("the tip off the drill axis on the joint moves, at most", MM, least=0)]
     tilt: Annotated[float, Figure("the tool tilted against it there, at most", DEG, least=0)]
+    dwell: Annotated[
+        float | None, Figure("for which the tool dwells there", S, least=0, null=None, none="not at all", added=True)
+    ] = None
+    spin: Annotated[
+        float | None, Figure("by which it spins on meanwhile", DEG, null=None, none="it does not", added=True)
+    ] = None
+    spin_moves: Annotated[
+        int | None, Count("joint moves in which it spins on, just before the corner", none="it does not", added=True)
+    ] = None
 
 
 @dataclass(frozen=True)

@@ -63,6 +63,15 @@ class Profile:
         inwards = np.diff(self.standoff) < 0
         return tuple((np.flatnonzero(inwards[1:] != inwards[:-1]) + 1).tolist())
 
+    def just_before_corner(self, rise: float) -> int:
+        """How many breakpoints lie before the corner and no more than so much above it.
+
+        Args:
+            rise: [m].
+        """
+        before = self.standoff[: self.corner] - self.standoff[self.corner]
+        return int(np.count_nonzero(before <= rise * (1 + 1e-6)))
+
     @property
     def leg_lengths(self) -> Array:
         """Path of the plunge and of the retract [m], shape (2,)."""

@@ -29,6 +29,7 @@ SEQUENCE = "How the holes follow each other"
 PROGRAM = "How the program fits the controller"
 NO_CALLS = Calls()
 IN_ONE_GO = Cycle()
+CREEP = 0.1  # of the feed, at most
 AS_TURNED = "Each joint against the link before it: of a FANUC, J3 as its pendant shows it plus J2"
 FEED = Nest("feed_mm_s", "Feeds of the tip.")
 LAST = Nest("breakthrough", "The last millimetres of the way in, where the drill comes out at the back.")
@@ -157,10 +158,11 @@ class Settings:
             words={
                 "blend": "straight moves of the tip that are blended",
                 "joint": "the last of the plunge and the first of the retract as joint moves that are blended",
+                "spin": "joint moves as with joint, between which the tool spins on for the time of the dwell",
                 "stop": "an exact stop, with all joints at rest",
             },
             none="as usual for the controller: blend for krl, joint for the others; stop where blend_mm is 0 or "
-            "the tool dwells",
+            "the tool dwells, spin where it dwells moving",
             note="In the space of the joints the corner of a motion without reversals is less than a right angle",
             label="corner",
         ),
@@ -432,7 +434,8 @@ class Settings:
         self._check_weights()
         if self.cycle.kind != "single" and self.legs == "free":
             raise InputError("free legs drill in one go", where="cycle", accepted="legs: straight, or kind: single")
-        turning_of(self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle.dwell)
+        if self.turning.kind == "spin" and self.legs == "free":
+            raise InputError("free legs do not spin on at the target", where="corner", accepted="legs: straight")
 
     def _check_weights(self) -> None:
         weights = dict(self.weights)
@@ -479,7 +482,27 @@ class Settings:
     @property
     def turning(self) -> Turning:
         """How the motion turns round at the corner, and how much of the depth is lost to it."""
-        return turning_of(self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle.dwell)
+        return turning_of(
+            self.controller, self.corner, self.blend, self.blend_shortfall, self.cycle, self.creep_in(self.cycle.dwell)
+        )
+
+    def creep_in(self, time: float) -> float:
+        """How far the tool creeps in while it spins on [m]: within the tolerance of the corner, at a tenth of the feed.
+
+        Args:
+            time: for which it spins on [s].
+        """
+        return min(self.corner_tolerance, CREEP * self.feed_inwards(0.0) * time)
+
+    @property
+    def creep(self) -> float:
+        """How far the tool creeps in while it spins on for as long as asked for [m]; 0 where it does not."""
+        return self.creep_in(self.cycle.dwell) if self.turning.kind == "spin" else 0.0
+
+    @property
+    def standing(self) -> float:
+        """For which the tool stands at the target [s]."""
+        return 0.0 if self.turning.kind == "spin" else self.cycle.dwell
 
     def feed_inwards(self, standoff: float) -> float:
         """Feed of a move towards the target [m/s].
@@ -494,6 +517,11 @@ class Settings:
     def blend_share(self) -> float:
         """Share of the shorter move that a blend may take, at most."""
         return known_controller(self.controller).share
+
+    @property
+    def sized(self) -> bool:
+        """Whether a program says how large a blend is."""
+        return known_controller(self.controller).sized
 
     @property
     def curve_known(self) -> bool:

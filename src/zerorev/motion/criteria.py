@@ -125,15 +125,16 @@ def measure(drilling: Drilling, evaluation: Evaluation, settings: Settings) -> M
     assert motion is not None
     assert score is not None
     profile, limits, steady = motion.profile, drilling.robot.limits, steady_rates(score, settings)
-    plunge = slice(profile.corner)
+    # where the tool spins on at the corner it turns at a speed between those of the two legs, not by the feed
+    plunge, drilled = profile.corner, profile.corner - profile.just_before_corner(settings.creep)
     lost = lost_motion(drilling, profile, motion.branch, settings.thrust)
     points = profile.at(sample_distances(profile, SAMPLES))
     poses = Poses(drilling, settings, joints_along(drilling, motion.branch, *points))
     return Measures(
         travel=score.travel,
         margin=float(steady.min()) if steady.size else 0.0,
-        plunge_rotation=float(np.abs(np.diff(profile.psi)[plunge]).sum()),
-        tool_speed_change=float(np.abs(profile.twist_rate[plunge]).max() * settings.feed_plunge),
+        plunge_rotation=float(np.abs(np.diff(profile.psi)[:plunge]).sum()),
+        tool_speed_change=float(np.abs(profile.twist_rate[:drilled]).max() * settings.feed_plunge),
         limit_distance=float((2 * score.limit_distance / (limits.upper - limits.lower)).min()),
         lost_motion=np.nan if lost is None else lost,
         **{name: float(figure) for name, figure in worst(poses).items()},

@@ -40,7 +40,8 @@ class JointCorner:
         reach: stand-off above the corner at which the joint moves begin and end [m].
         off_axis: greatest distance of the tip from the drill axis [m].
         tilt: greatest angle of the tool against the drill axis [rad].
-        joints: controller angles with turns at entry, corner and exit [rad], shape (3, 6).
+        joints: controller angles with turns at entry, corner and exit [rad], shape (3, 6); where the tool spins on
+            before the corner, where each of its moves begins, too: shape (n, 6).
     """
 
     reach: float
@@ -50,7 +51,7 @@ class JointCorner:
 
 
 def joint_corner(
-    drilling: Drilling, motion: Motion, reach: float | None, tolerance: float, tilt: float
+    drilling: Drilling, motion: Motion, reach: float | None, tolerance: float, tilt: float, spin: int = 0
 ) -> JointCorner | None:
     """The corner of a motion as two joint moves, as long as asked for, or as long as the tolerances allow.
 
@@ -60,23 +61,26 @@ def joint_corner(
         reach: the most [m]; None: 1 mm for an arm of size 1. More than half of the shorter segment is never taken.
         tolerance: greatest distance of the tip from the drill axis [m], above 0.
         tilt: greatest angle of the tool against the drill axis [rad], above 0.
+        spin: on how many moves the tool spins on, just before the corner.
 
     Returns:
         the joint moves, or None where even the shortest ones that can be printed exceed a tolerance, or where the
         motion cannot be followed.
     """
     size, profile = drilling.robot.size, motion.profile
-    around = profile.standoff[[profile.corner - 1, profile.corner + 1]] - profile.standoff[profile.corner]
+    begin = profile.corner - spin
+    around = np.abs(np.diff(profile.standoff))[[begin - 1, profile.corner]]
     longest, reach = float(around.min() / 2), REACH * size if reach is None else reach
     if reach > longest:
         reach = _rounded(longest, size)
     for _ in range(ROUNDS):
         if reach < SHORTEST * size:
             break
-        joints = _ends(drilling, motion, reach)
+        joints = _ends(drilling, motion, reach, spin)
         if np.isnan(joints).any():
             break
-        off_axis, tilted = off_axis_and_tilt(drilling, joints)
+        each = [off_axis_and_tilt(drilling, joints[k : k + 3]) for k in range(spin + 1)]
+        off_axis, tilted = (max(values) for values in zip(*each, strict=True))
         excess = max(off_axis / tolerance, tilted / tilt)
         if excess <= 1:
             return JointCorner(reach, off_axis, tilted, joints)
@@ -89,16 +93,16 @@ def _rounded(reach: float, size: float) -> float:
     return float(np.floor(reach / (STEP * size)) * STEP * size)
 
 
-def _ends(drilling: Drilling, motion: Motion, reach: float) -> Array:
-    """Joints with turns at entry, corner and exit [rad], shape (3, 6); those at the corner are the motion's."""
+def _ends(drilling: Drilling, motion: Motion, reach: float, spin: int) -> Array:
+    """Joints with turns at entry, corner and exit [rad], of the spin too; at breakpoints they are the motion's."""
     profile, corner = motion.profile, motion.profile.corner
-    standoff, psi, slopes = profile.standoff[corner], profile.psi[corner], profile.twist_rate[[corner - 1, corner]]
-    ends = [motion.joints[corner]]
-    for slope in slopes:
+    ends = []
+    for at, segment in ((corner - spin, corner - spin - 1), (corner, corner)):
         way = np.array([0.0, reach])
-        start, end = joints_along(drilling, motion.branch, standoff + way, psi + slope * way)
-        ends.append(end + FULL_TURN * np.round((ends[0] - start) / FULL_TURN))
-    return np.array([ends[1], ends[0], ends[2]])
+        standoff, psi = profile.standoff[at] + way, profile.psi[at] + profile.twist_rate[segment] * way
+        start, end = joints_along(drilling, motion.branch, standoff, psi)
+        ends.append(end + FULL_TURN * np.round((motion.joints[at] - start) / FULL_TURN))
+    return np.array([ends[0], *motion.joints[corner - spin : corner + 1], ends[1]])
 
 
 def off_axis_and_tilt(drilling: Drilling, joints: Array) -> tuple[float, float]:

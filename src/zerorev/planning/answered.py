@@ -98,7 +98,7 @@ def cycle_time(drilling: Drilling, settings: Settings, motion: Motion, corner: C
     """
     way, own = Way.of(drilling, motion, settings), settings.of(drilling.hole)
     moves = moves_of(own, motion, corner, way)
-    return sum(abs(end.standoff - begin.standoff) / feed for begin, end, feed in moves) + own.cycle.dwell
+    return sum(abs(end.standoff - begin.standoff) / feed for begin, end, feed in moves) + own.standing
 
 
 def _baseline(drilling: Drilling, profile: Profile, branch: int, settings: Settings) -> Baseline | None:

@@ -24,15 +24,18 @@ from zerorev.planning.answered import answered, motion_findings
 from zerorev.planning.pecks import pecked
 from zerorev.planning.why_none import why_none, why_too_short
 from zerorev.search.bounds.proof import MOST_REVERSALS
+from zerorev.search.chip_break import chip_breaking, straight_motions
 from zerorev.search.cut_short import cut_short
 from zerorev.search.cycles import chip_breaks, deepest_in_cycle, motions_that_break, raised, shallower
 from zerorev.search.deepest import Deepest
 from zerorev.search.optimum import alternatives, optimum, too_short
 from zerorev.search.rank import Candidate, Order
+from zerorev.search.spin import TIMES, spinning
 from zerorev.search.twins import gentlest_first
 
 __all__ = ["evaluated_stroke", "lever_findings", "plan", "plan_deepest"]
 
+PASSING = 6  # motions of which the best that passes the check is taken, for each time that the tool spins on
 SHARES = (1.0, 0.999, 0.99, 0.97, 0.9, 0.8, 0.5, 0.25)  # of the deepest stroke, until one passes the check
 # lengths for an arm of size 1 (`Robot.size`)
 NO_OFFSET = 1e-6  # [m]
@@ -62,6 +65,8 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     if too_short(drilling):
         return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(why_too_short(robot, hole),))
     cycle = hole.drilled_by(settings.cycle)
+    if hole.profile is None and settings.turning.kind == "spin":
+        return _spinning(drilling, settings, cycle)
     if hole.profile is None and cycle.kind == "chip_break":
         return _chip_breaking(drilling, settings, cycle, deepest_in_cycle(drilling, settings))
     if hole.profile is None and len(cycle.strokes(hole.depth)) > 1:
@@ -112,6 +117,10 @@ def plan_deepest(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None
     drilling = Drilling(robot, tool, hole, settings.limit_margin)
     expect(f"deepest stroke with {settings.legs} legs")
     check_robot(robot, settings)
+    if settings.turning.kind == "spin":
+        message = "the deepest stroke is not sought where the tool spins on at the target: ask for it without moving"
+        said = Finding("error", "deepest", message, hole.id)
+        return HolePlan(hole, "infeasible", drilling.wrist_offset, findings=(said,))
     deepest = deepest_in_cycle(drilling, settings)
     drilling = drilling.without_motion()
     hole = drilling.hole
@@ -191,6 +200,26 @@ def _chip_breaking(drilling: Drilling, settings: Settings, cycle: Cycle, deepest
         )
     found = None if answer.motion is None else answer.motion.profile
     return _with_deepest(answer, settings, raised(drilling, settings, cycle, deepest, found))
+
+
+def _spinning(drilling: Drilling, settings: Settings, cycle: Cycle) -> HolePlan:
+    """The answer with the best motion found that spins on at the target as long as it can, and passes the check."""
+    if cycle.kind == "chip_break":
+        known = chip_breaking(drilling, settings, cycle)
+    else:
+        known = list(straight_motions(drilling, settings))
+    if not known:
+        return answered(drilling, settings, "planned", None)
+    why = "none can be run"
+    for share in TIMES:
+        answer = _passing(drilling, settings, spinning(drilling, settings, known, share * cycle.dwell)[:PASSING])
+        if answer.verified is not None and answer.verified.passed:
+            return answer
+        if answer.verified is not None:
+            why = answer.verified.failures[0]
+    return _none_passes(
+        drilling, f"no motion was found on which the tool spins on at the target and that passes the check: {why}"
+    )
 
 
 def _none_passes(drilling: Drilling, message: str) -> HolePlan:

@@ -184,7 +184,7 @@ def _offer(robot: Robot, tool: Tool, settings: Settings, choose: bool, answer: H
     best = order.judged(motion.profile, motion.branch, Evaluation(motion, score, ()))
     assert best is not None
     found = [planned]
-    in_one_go = settings.cycle.kind == "single"
+    in_one_go = settings.cycle.kind == "single" and settings.turning.kind != "spin"
     for one in members(drilling, settings, best) if in_one_go else (best,):
         if one is best or _affordable(order, one, best):
             found += _turned(drilling, settings, one, planned)

@@ -102,8 +102,9 @@ def about(hole: HoleProgram, joint_names: Sequence[str], comments: Comments) -> 
 def _blend(program: Program) -> str:
     settings = program.settings
     kind = settings.turning.kind
-    if kind == "joint":
-        return f"joint moves from {settings.turning.reach * 1e3:g} mm or less"
+    if kind in ("joint", "spin"):
+        spins = ", on some of which the tool spins on" if kind == "spin" else ""
+        return f"joint moves from {settings.turning.reach * 1e3:g} mm or less{spins}"
     return f"{settings.blend * 1e3:g} mm" if kind == "blend" else "none: exact stop"
 
 

@@ -260,12 +260,12 @@ def _hole_program(plan: Plan, hole: HolePlan, stop: Stop, way: Array) -> HolePro
         Move(
             end,
             abs(point.standoff - before.standoff),
-            feed_of(settings, before, point),
+            feed_of(settings, hole.corner, before, point),
             point.blend,
             point.leg,
             point.comment,
             point.linear,
-            settings.cycle.dwell if point is points[corner] else 0.0,
+            settings.standing if point is points[corner] else 0.0,
         )
         for (before, point), end in zip(pairwise(points), ends[1:], strict=True)
     )

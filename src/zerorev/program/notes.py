@@ -104,7 +104,7 @@ def _depth_lost(program: Program, depth: CornerDepth) -> str:
         return ""
     turning = program.settings.turning
     what = f"the blend of radius {depth.blend * 1e3:.4g} mm"
-    if turning.kind == "joint":
+    if turning.kind in ("joint", "spin"):
         what = f"the blend of the joint moves ({depth.blend * 1e3:.4g} mm to either side, at most)"
     says = f"{what} turns back {depth.shortfall * 1e3:.4g} mm short ({turning.law})"
     if depth.lost > NOTICEABLE:

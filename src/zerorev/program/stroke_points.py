@@ -24,7 +24,8 @@ def points_of(settings: Settings, motion: Motion, corner: Corner | None, way: Wa
         way: to the motion and away from it.
     """
     last = settings.breakthrough_length if settings.breakthrough_feed is not None else 0.0
-    points, at = waypoints(motion.profile, way.lead_in.length, corner.reach if corner else 0.0, last)
+    reach, spin = (corner.reach, corner.spin_moves or 0) if corner else (0.0, 0)
+    points, at = waypoints(motion.profile, way.lead_in.length, reach, last, spin)
     points = with_blends(points, at, settings, stop=corner is not None and corner.kind == "stop")
     if way.approach.length > 0:
         ahead = replace(points[0], standoff=points[0].standoff + way.approach.length)
@@ -35,14 +36,17 @@ def points_of(settings: Settings, motion: Motion, corner: Corner | None, way: Wa
     return points, at
 
 
-def feed_of(settings: Settings, before: Waypoint, point: Waypoint) -> float:
-    """Of the move from one point to the next [m/s].
+def feed_of(settings: Settings, corner: Corner | None, before: Waypoint, point: Waypoint) -> float:
+    """Of the move from one point to the next [m/s]; where the tool spins on the dwell gives it.
 
     Args:
         settings: with the feeds.
+        corner: how the motion turns round.
         before: where the move begins.
         point: where it ends.
     """
+    if point.leg == "spin" and corner is not None and corner.dwell and corner.spin_moves:
+        return (before.standoff - point.standoff) * corner.spin_moves / corner.dwell
     inwards = point.leg in ("lead-in", "plunge")
     return settings.feed_inwards(max(before.standoff, point.standoff)) if inwards else settings.feed_retract
 
@@ -59,4 +63,4 @@ def moves_of(
         way: likewise.
     """
     for before, point in pairwise(points_of(settings, motion, corner, way)[0]):
-        yield before, point, feed_of(settings, before, point)
+        yield before, point, feed_of(settings, corner, before, point)

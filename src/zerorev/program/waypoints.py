@@ -16,7 +16,7 @@ GREATEST_TURN = float(np.deg2rad(120.0))
 """Greatest turn of the tool in one move [rad]: at 180 deg the short way round is ambiguous (theory §5)."""
 
 
-Leg = Literal["approach", "lead-in", "plunge", "retract", "depart"]
+Leg = Literal["approach", "lead-in", "plunge", "spin", "retract", "depart"]
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Waypoint:
 
 
 def waypoints(
-    profile: Profile, lead_in: float, reach: float = 0.0, last: float = 0.0
+    profile: Profile, lead_in: float, reach: float = 0.0, last: float = 0.0, spin: int = 0
 ) -> tuple[tuple[Waypoint, ...], int]:
     """The points of a motion, the lead-in before it, and the index of the corner among them.
 
@@ -52,7 +52,10 @@ def waypoints(
         lead_in: its length [m].
         reach: how far from the corner joint moves begin and end [m]; 0: there are none.
         last: of the way in, has a feed of its own [m]; 0: none has.
+        spin: on how many joint moves the tool spins on, just before the corner.
     """
+    begin = profile.corner - spin
+    turns = {*profile.turns, begin}
     start = Waypoint(float(profile.standoff[0]), float(profile.psi[0]), "lead-in", "start of the stroke")
     points = [start]
     if lead_in > 0:
@@ -62,15 +65,20 @@ def waypoints(
         points = [ahead, *_split(ahead, start)]
     corner = 0
     for k in range(1, len(profile.standoff)):
-        leg: Leg = "plunge" if k <= profile.corner else "retract"
-        end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, _said_of(profile, k))
-        from_turn, to_turn = k - 1 in profile.turns, k in profile.turns
+        leg: Leg = "plunge" if k <= begin else "spin" if k <= profile.corner else "retract"
+        said = _said_of(profile, k) if k == profile.corner or not begin <= k < profile.corner else "spins on from here"
+        end = Waypoint(float(profile.standoff[k]), float(profile.psi[k]), leg, said)
+        if leg == "spin":
+            points.append(replace(end, linear=False))
+            corner = len(points) - 1
+            continue
+        from_turn, to_turn = k - 1 in turns, k in turns
         if k <= profile.corner and last > 0 and points[-1].standoff > last > end.standoff + reach * to_turn:
             slower = replace(_on_the_way(points[-1], end, points[-1].standoff - last), comment="the last of the way in")
             points.extend(_joint_moves(points[-1], slower, from_turn, False, reach))
             from_turn = False
         points.extend(_joint_moves(points[-1], end, from_turn, to_turn, reach))
-        if k == profile.corner:
+        if k == begin:
             corner = len(points) - 1
     return tuple(points), corner
 

@@ -24,7 +24,7 @@ from zerorev.search.broken_legs import CLEAN, GUARDS, BrokenLegs, Numbers
 from zerorev.search.optimum import best_motion, on_each_branch
 from zerorev.search.rank import Candidate, Order
 
-__all__ = ["chip_breaking", "quickly", "with_breaks"]
+__all__ = ["chip_breaking", "quickly", "straight_motions", "with_breaks"]
 
 MARGINS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.5, 3.0)  # beyond the motion threshold, as shares of it
 LEAST = float(np.deg2rad(2.0))  # [rad/m] of which they are shares where there is no threshold: 0.002 deg/mm
@@ -44,7 +44,7 @@ def chip_breaking(
         known: motions that break chips, found otherwise.
     """
     order = Order(drilling, settings)
-    found = [*known, *_broken(order, cycle, _straight(drilling, settings))]
+    found = [*known, *_broken(order, cycle, straight_motions(drilling, settings))]
     best = sorted(found, key=order.rank)[:IMPROVED]
     return sorted([*found, *(better for one in best for better in _improved(order, cycle, one))], key=order.rank)
 
@@ -108,8 +108,13 @@ def _improved(order: Order, cycle: Cycle, motion: Candidate) -> Iterator[Candida
                 break
 
 
-def _straight(drilling: Drilling, settings: Settings) -> Iterator[Candidate]:
-    """Good motions of straight legs, those of more margin and of every branch among them."""
+def straight_motions(drilling: Drilling, settings: Settings) -> Iterator[Candidate]:
+    """Good motions of straight legs, those of more margin and of every branch among them.
+
+    Args:
+        drilling: what is drilled.
+        settings: by which they are sought.
+    """
     plain = replace(settings, legs="straight", proof_boxes=0)
     unit = settings.min_rate or LEAST
     for margin in MARGINS:

@@ -14,9 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from zerorev.model._arrays import Array, rotation_rpy, transform
-from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.model.plan import Corner, HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.settings import Settings
 from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenProgram
 from zerorev.verify.arm import branch_of, skeleton
 from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slack
@@ -25,6 +26,7 @@ __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
 PLACE = 1e-5  # [m]: on which side of a place a move lies
 FEED = 1e-6  # [m/s]: six decimals
+TIME = 1e-5  # relative, of a time that is computed from angles
 WAIT = 1e-9  # [s]: a dwell is in hundredths, which every language prints
 TIP = {"m/s": 1.0, "cm/min": 1e-2 / 60}  # [m/s]: units in which the speed of the tip is given
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
@@ -74,13 +76,29 @@ def places(plan: Plan, hole_plan: HolePlan, program: WrittenProgram, written: Wr
     poses = np.stack([pose(written.start), *(pose(move.end) for move in written.moves)]) @ T_tool_tcp
     hole = hole_plan.hole
     standoff = (hole.target - poses[:, :3, 3]) @ hole.direction
-    corner = int(np.argmin(standoff))
+    corner = _deepest(plan, hole_plan, written, standoff)
     # on the stroke and its lead-in every point but the corner is blended
     stops = [k for k, move in enumerate(written.moves[:-1], start=1) if move.stops and k != corner]
     first, last = int(1 in stops), len(poses) - 1 - int(len(poses) - 2 in stops)
     # where the tool is already at the start of the stroke, there is no lead-in
     lead = first + int(np.argmin(np.abs(standoff[first : corner + 1] - hole.depth)))
     return Places(poses, standoff, first, lead, corner, last)
+
+
+def _deepest(plan: Plan, hole_plan: HolePlan, written: WrittenHole, standoff: Array) -> int:
+    """The index of the deepest point; where the tool spins on before it, the last digits do not tell.
+
+    It is then where the last of the joint moves begins, if that is no less deep but for what the tool creeps in, and
+    for the digits.
+    """
+    lowest = int(np.argmin(standoff))
+    if hole_plan.corner is None or not hole_plan.corner.spin_moves:
+        return lowest
+    jointly = [k for k, move in enumerate(written.moves) if not move.linear]
+    last = jointly[-1] if jointly else lowest
+    slack = sum(length_slack(plan.robot, written.moves[max(k - 1, 0)].end) for k in (lowest, last))
+    creep = plan.settings.of(hole_plan.hole).creep
+    return last if standoff[last] - standoff[lowest] <= creep + slack else lowest
 
 
 def frames_as_planned(plan: Plan, program: WrittenProgram) -> Iterator[str]:
@@ -122,16 +140,22 @@ def moves_as_planned(
     distance += depth - float(at.standoff[at.lead]) - distance[at.lead]
     planned = profile.at(distance)[0] + np.maximum(-distance, 0) + np.maximum(distance - knots[-1], 0)
     beside = np.abs(planned - at.standoff) > np.cumsum(2 * slack)
-    if not (0 < at.corner < len(steps) and (np.abs(steps) > 0).all()) or beside.any():
+    count = hole_plan.corner.spin_moves or 0 if hole_plan.corner else 0
+    spins = range(at.corner - count, at.corner)  # the moves on which the tool spins on
+    still = any(step == 0 for k, step in enumerate(steps) if k not in spins)
+    if not (count < at.corner < len(steps) and count < profile.corner) or still or beside.any():
         place = f", first at {names[int(np.argmax(beside))]}" if beside.any() else ""
         yield f"the points do not lead in to one deepest point and out again as planned{place}"
         return
     distance = _along(profile, distance, at.standoff)
+    if count:  # so close to each other that the last digits do not tell where on the path they lie
+        distance[at.corner - count : at.corner + 1] = knots[profile.corner - count : profile.corner + 1]
 
     turning = np.clip(distance, distance[at.first], 0)  # the lead-in; in the air the spin stays
     psi = np.interp(distance, knots, profile.psi) + turning * -profile.twist_rate[0]
     off, turned = _apart(_poses(hole_plan, at.standoff, psi), at.T_base_tcp)
-    steepest = float(np.abs(profile.twist_rate).max())
+    drilled = np.delete(profile.twist_rate, np.arange(profile.corner - count, profile.corner))
+    steepest = float(np.abs(drilled).max())
     for name, apart, angle, length, little in zip(names, off, turned, slack, slack_angle, strict=True):
         if apart > length or angle > little + length * steepest:
             yield f"{name} lies {_mm(apart)} off the planned axis, the tool turned {_deg(angle)} from the planned spin"
@@ -154,8 +178,10 @@ def moves_as_planned(
 
     stops = hole_plan.corner is not None and hole_plan.corner.kind == "stop"
     yield from _blends_differ(plan, written, at, steps, 0.0 if stops else settings.turning.radius)
-    yield from _paces_differ(plan, written, at, steps)
-    yield from _waits_differ(written, at, settings.cycle.dwell)
+    yield from _paces_differ(settings, plan.robot, written, at, steps, spins)
+    if hole_plan.corner is not None and count:
+        yield from _spins_differ(plan.robot, written, spins, hole_plan.corner)
+    yield from _waits_differ(written, at, settings.standing)
 
 
 def _along(profile: Profile, distance: Array, standoff: Array) -> Array:
@@ -189,10 +215,13 @@ def _blends_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array, a
                 yield f"line {move.line} is blended by {_mm(blend)}, the plan asks for {_mm(fits)}"
 
 
-def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) -> Iterator[str]:
+def _paces_differ(
+    settings: Settings, robot: Robot, written: WrittenHole, at: Places, steps: Array, spins: range
+) -> Iterator[str]:
     """Feeds must be the job's; of a move that has a time, what comes of that."""
-    settings = plan.settings
     for k, move in enumerate(written.moves):
+        if k in spins:
+            continue
         feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
         outer = max(float(at.standoff[k]), float(at.standoff[k + 1]))
         if at.first <= k < at.corner and settings.breakthrough_feed is not None:
@@ -203,13 +232,27 @@ def _paces_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array) ->
         else:
             # of a time, the digits of its last place, and of both ends
             ends = (written.start if k == 0 else written.moves[k - 1].end), move.end
-            time, open_ = _time_by_share(plan.robot, *ends, value) if unit == "%" else (value, _half_a_unit(value))
+            time, open_ = _time_by_share(robot, *ends, value) if unit == "%" else (value, _half_a_unit(value))
             time = max(float(time), 1e-9)
             found = abs(float(steps[k])) / time
-            apart = sum(length_slack(plan.robot, end) for end in ends)
+            apart = sum(length_slack(robot, end) for end in ends)
             slack = FEED + (found * open_ + apart) / time
         if abs(found - feed) > slack:
             yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
+
+
+def _spins_differ(robot: Robot, written: WrittenHole, spins: range, corner: Corner) -> Iterator[str]:
+    """The moves on which the tool spins on must be joint moves, and take the time of the dwell, each the same."""
+    wanted = (corner.dwell or 0.0) / len(spins)
+    for k in spins:
+        move, before = written.moves[k], written.start if k == 0 else written.moves[k - 1].end
+        value, unit = move.pace
+        if move.linear or unit not in ("s", "%"):
+            yield f"line {move.line} is a straight move, or has no time, where the tool is to spin on"
+            continue
+        time, open_ = _time_by_share(robot, before, move.end, value) if unit == "%" else (value, _half_a_unit(value))
+        if abs(float(time) - wanted) > open_ + WAIT + TIME * wanted:
+            yield f"line {move.line} takes {float(time):.4g} s, on which the tool is to spin on for {wanted:.4g} s"
 
 
 def _waits_differ(written: WrittenHole, at: Places, dwell: float) -> Iterator[str]:

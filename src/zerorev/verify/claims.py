@@ -17,6 +17,7 @@ from zerorev.verify.joint_corner import corner_figures
 from zerorev.verify.measure import Reversals, mean_rates, slowest_at, travel
 from zerorev.verify.path import Track
 from zerorev.verify.sound import least_room, nearest_to_limit
+from zerorev.verify.spin import spins_as_asked
 
 __all__ = ["as_asked", "blend_keeps", "complete", "corner_keeps", "joints_stated", "reversals_claimed", "score_claimed"]
 
@@ -76,6 +77,8 @@ def as_asked(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan, 
         yield f"branch {hole.branch} is asked for, the plan says {motion.branch}"
     if hole_plan.status == "planned":
         yield from _breaks_as_asked(robot, settings, hole_plan, motion)
+        if settings.turning.kind == "spin":
+            yield from spins_as_asked(robot, tool, settings, hole_plan, motion)
     bound = settings.psi_bound
     if hole_plan.status == "planned" and bound is not None:
         psi = float(np.abs(motion.profile.psi).max())
@@ -119,15 +122,18 @@ def corner_keeps(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePl
     if motion is None or corner is None:
         return
     asked = settings.turning.kind
-    if corner.kind != asked and corner.kind != "stop":
+    if corner.kind != asked and (corner.kind != "stop" or asked == "spin"):
         yield f"the corner is of kind {corner.kind}, asked is {asked}"
-    if corner.kind != "joint":
+    if (corner.dwell or 0.0) != settings.standing and corner.kind != "spin":
+        yield f"the tool stands at the corner for {corner.dwell or 0.0:g} s, asked are {settings.standing:g} s"
+    spin = corner.spin_moves or 0
+    if corner.kind not in ("joint", "spin") or not spin < motion.profile.corner:  # which is said elsewhere
         return
     if not 0 < corner.reach <= settings.turning.reach * (1 + 1e-9):
         asked_for = _mm(settings.turning.reach)
         yield f"the joint moves at the corner begin {_mm(corner.reach)} from it, asked are {asked_for}"
         return
-    found = corner_figures(robot, tool, hole_plan.hole, motion, corner.reach)
+    found = corner_figures(robot, tool, hole_plan.hole, motion, corner.reach, spin)
     for name, keeps in zip(robot.joint_names, found.keeps, strict=True):
         if not keeps:
             yield f"{name} moves another way on the joint moves at the corner than on the leg"

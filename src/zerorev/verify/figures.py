@@ -179,12 +179,14 @@ def _measures(course: Course, settings: Settings, score: Score, lost: LostMotion
     rates = score.min_rate if settings.min_rate_rule == "pointwise" else score.mean_rate
     steady = rates[np.array(score.reversals_per_joint) == 0]
     turns = np.abs(np.diff(profile.psi))[: profile.corner]
+    rises = profile.standoff[: profile.corner] - profile.standoff[profile.corner]
+    drilled = int((rises > settings.creep * (1 + 1e-6)).sum())  # but for where the tool spins on
     half_range = (robot.limits.upper - robot.limits.lower) / 2
     return Measures(
         travel=score.travel,
         margin=float(steady.min(initial=np.inf)) if steady.size else 0.0,
         plunge_rotation=float(turns.sum()),
-        tool_speed_change=float((turns / lengths[: profile.corner]).max() * settings.feed_plunge),
+        tool_speed_change=float((turns / lengths[: profile.corner])[:drilled].max() * settings.feed_plunge),
         limit_distance=float((score.limit_distance / half_range).min()),
         compliance_axial=float(give[0]),
         compliance_lateral=float(give[1]),

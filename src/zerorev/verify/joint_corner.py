@@ -25,7 +25,8 @@ class CornerFigures(NamedTuple):
     """What two joint moves do that replace the corner of a motion; NaN where they are out of reach.
 
     Attributes:
-        joints: controller angles with turns at entry, corner and exit [rad], shape (3, 6).
+        joints: controller angles with turns at entry, corner and exit [rad], and before the corner where each move on
+            which the tool spins on begins, shape (n, 6).
         off_axis: greatest distance of the tip from the drill axis [m], of any blend of the two moves.
         tilt: greatest angle of the tool against the drill axis [rad], of any blend of the two moves.
         keeps: for each joint whether it goes the same way on both moves as on the leg from which, or into which, they
@@ -38,7 +39,7 @@ class CornerFigures(NamedTuple):
     keeps: tuple[bool, ...]
 
 
-def corner_figures(robot: Robot, tool: Tool, hole: Hole, motion: Motion, reach: float) -> CornerFigures:
+def corner_figures(robot: Robot, tool: Tool, hole: Hole, motion: Motion, reach: float, spin: int = 0) -> CornerFigures:
     """What the joint moves of a motion's corner do.
 
     A move that is linear in the joints keeps the direction of each of them, so that its two ends tell it.
@@ -50,19 +51,25 @@ def corner_figures(robot: Robot, tool: Tool, hole: Hole, motion: Motion, reach: 
         motion: whose corner.
         reach: stand-off above the corner at which the joint moves begin and end [m], within the two segments that meet
             there.
+        spin: on how many moves the tool spins on, just before the corner.
     """
     profile, k = motion.profile, motion.profile.corner
-    slopes, ways = profile.twist_rate[[k - 1, k]], np.array([-1.0, 1.0])
-    standoff = profile.standoff[k] + np.array([reach, 0.0, reach])
-    psi = profile.psi[k] + np.array([slopes[0] * reach, 0.0, slopes[1] * reach])
+    slopes, ways = profile.twist_rate[k - spin - 1 : k + 1], np.array([-1.0] * (spin + 1) + [1.0])
+    knots = slice(k - spin, k + 1)
+    standoff = np.array([reach + profile.standoff[k - spin], *profile.standoff[knots], profile.standoff[k] + reach])
+    enter, leave = profile.psi[k - spin] + slopes[0] * reach, profile.psi[k] + slopes[-1] * reach
+    psi = np.array([enter, *profile.psi[knots], leave])
     stated = motion.joints[k]
-    joints = follow(robot, tool, hole, Path(standoff, psi, (), 1), posture_of(robot.arm, stated), stated)
-    ends = np.ascontiguousarray(joints[[0, 2]])
+    joints = follow(robot, tool, hole, Path(standoff, psi, (), 1 + spin), posture_of(robot.arm, stated), stated)
+    # each move is held to how the leg goes at its end that is farther from the corner
+    ends = np.ascontiguousarray(joints[[*range(spin + 1), spin + 2]])
     rates = line_rates(robot, tool, hole, ends, ways, ways * slopes)
     moved, nil = np.diff(joints, axis=0), NIL_STEP + robot.nil_rate * reach
     against = ((np.abs(moved) > nil) & (np.abs(rates) > robot.nil_rate) & (moved * rates < 0)) | ~np.isfinite(rates)
-    keeps = tuple(not either for either in np.logical_or(*against).tolist())
-    return CornerFigures(joints, *triangle_figures(robot, tool, hole, joints), keeps)
+    keeps = tuple(not any(column) for column in against.T.tolist())
+    each = [triangle_figures(robot, tool, hole, joints[n : n + 3]) for n in range(spin + 1)]
+    off_axis, tilt = (max(values) for values in zip(*each, strict=True))
+    return CornerFigures(joints, off_axis, tilt, keeps)
 
 
 def triangle_figures(robot: Robot, tool: Tool, hole: Hole, joints: Array) -> tuple[float, float]:

@@ -64,9 +64,10 @@ def test_a_sample_of_edits(plan):
     assert len({kind for kind, _ in found}) > 8
 
 
+@pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
-def test_edits_where_the_tool_stands(count, plan_for):
-    hold(plan_for("ma2010", 1, cycle=Cycle(dwell=0.12)), count, seed=4)
+def test_edits_where_the_tool_dwells(moving, count, plan_for):
+    hold(plan_for("ma2010", 1, cycle=Cycle(dwell=0.12, moving=moving)), count, seed=4)
 
 
 @pytest.mark.long

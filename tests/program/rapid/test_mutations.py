@@ -85,9 +85,14 @@ def test_a_sample_of_edits(plan):
     assert len({kind for kind, _ in found}) > 8
 
 
+@pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
-def test_edits_where_the_tool_stands(count):
-    hold(panel_plan(stand_in("ABB"), 1, min_rate=zr.Settings().min_rate, cycle=Cycle(dwell=0.12)), count, seed=4)
+def test_edits_where_the_tool_dwells(moving, count):
+    hold(
+        panel_plan(stand_in("ABB"), 1, min_rate=zr.Settings().min_rate, cycle=Cycle(dwell=0.12, moving=moving)),
+        count,
+        seed=4,
+    )
 
 
 @pytest.mark.long

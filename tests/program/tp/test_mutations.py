@@ -64,9 +64,10 @@ def test_a_sample_of_edits(judge):
     assert sum(count for (_, name, _), count in found.items() if name is None) > 60
 
 
+@pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
-def test_edits_where_the_tool_stands(count, fanuc, for_tp):
-    hold(Judge.of(position_plan(fanuc, 2, cycle=Cycle(dwell=0.12), **for_tp), TP), count, seed=4)
+def test_edits_where_the_tool_dwells(moving, count, fanuc, for_tp):
+    hold(Judge.of(position_plan(fanuc, 2, cycle=Cycle(dwell=0.12, moving=moving), **for_tp), TP), count, seed=4)
 
 
 @pytest.mark.long

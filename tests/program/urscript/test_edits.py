@@ -88,6 +88,7 @@ def test_five_hundred_edits(plan):
     assert {name for _, name in found} == {None, "last printed digit", "zeros of a number", "white space or comment"}
 
 
+@pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("count", [60, pytest.param(500, marks=pytest.mark.long)])
-def test_edits_where_the_tool_stands(count, plan_called):
-    hold(plan_called("position 2", cycle=Cycle(dwell=0.12)), count, seed=4)
+def test_edits_where_the_tool_dwells(moving, count, plan_called):
+    hold(plan_called("position 2", cycle=Cycle(dwell=0.12, moving=moving)), count, seed=4)

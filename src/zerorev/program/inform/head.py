@@ -51,7 +51,7 @@ def _not_set(program: Program) -> Iterator[str]:
 
 def _open(program: Program) -> Iterator[str]:
     yield "Not yet tried on a controller: that MOVL between pulse positions turns the tool evenly about one axis."
-    if program.settings.turning.kind == "joint":
+    if program.settings.turning.kind in ("joint", "spin"):
         yield (
             f"Not yet tried either: that the corner is passed without a stop. How far PL={BLENDED} reaches is a "
             "setting of the controller; the depth lost to it is not in the job: measure it."

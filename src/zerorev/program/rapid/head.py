@@ -14,6 +14,9 @@ CORNERS = {
     "joint": "At the target MoveL hands over to two MoveAbsJ, which meet in a zone: no joint has to stop there or turn "
     "round. Open: that none stops has not been seen on a controller. Watch the joints, and the event log (50024, "
     "corner path failure: a zone became a stop).",
+    "spin": "At the target MoveL hands over to MoveAbsJ, on some of which the tool spins on; they meet in zones, so "
+    "that no joint has to rest there. Open: that none stops has not been seen on a controller, and zones so small may "
+    "be taken for stops. Watch the joints, and the event log (50024, corner path failure: a zone became a stop).",
     "blend": "At the target two MoveL, straight in and straight back, meet in a zone. Open: whether a controller takes "
     "that without a stop of all joints, and how deep. Try it in RobotStudio first; corner: joint avoids it.",
     "stop": "At the target there is an exact stop: all joints rest there, which is what the method is to avoid.",

@@ -57,11 +57,12 @@ def _corner(program: Program) -> Iterator[str]:
     turning = program.settings.turning
     if turning.kind == "stop":
         return
+    spins = ", and on those between them the tool spins on" if turning.kind == "spin" else ""
     yield (
-        "The last of the plunge and the first of the retract are J moves by time (msec), blended with CNT100. How far "
-        f"CNT reaches depends on speed, acceleration and override and is not known: {turning.interval[0] * 1e3:g} to "
-        f"{turning.interval[1] * 1e3:g} mm of depth are lost there, at every override. Measure at the override with "
-        "which you drill."
+        f"The last of the plunge and the first of the retract{spins} are J moves by time (msec), blended with CNT100. "
+        "How far CNT reaches depends on speed, acceleration and override and is not known: "
+        f"{turning.interval[0] * 1e3:g} to {turning.interval[1] * 1e3:g} mm of depth are lost there, at every "
+        "override. Measure at the override with which you drill."
     )
 
 

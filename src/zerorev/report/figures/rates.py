@@ -39,7 +39,9 @@ def critical_rates(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes |
     """
     hole = style.hole_of(plan, hole)
     motion = style.motion_of(hole)
-    rates = bracket(Drilling.of(plan, hole.hole), motion.profile, motion.branch, SPIN_STEP)
+    rates = bracket(
+        Drilling.of(plan, hole.hole), motion.profile, motion.branch, SPIN_STEP, plan.settings.of(hole.hole).creep
+    )
     chosen, slopes, here = rates.chosen, rates.slopes, rates.here
 
     heading = style.hole_heading(plan, hole)

@@ -87,7 +87,7 @@ class Bracket:
         return broken_at_poles(np.rad2deg(self.psi), self.kappa[:, joint], self.theta_psi[:, joint])
 
 
-def bracket(drilling: Drilling, profile: Profile, branch: int, step: float) -> Bracket:
+def bracket(drilling: Drilling, profile: Profile, branch: int, step: float, creep: float = 0.0) -> Bracket:
     """The critical rates around the corner of a motion.
 
     Args:
@@ -95,13 +95,15 @@ def bracket(drilling: Drilling, profile: Profile, branch: int, step: float) -> B
         profile: the spin along the path.
         branch: 0..7.
         step: between the spins that are examined [rad].
+        creep: how far the tool creeps in while it spins on at the corner [m]; 0: it does not.
     """
     n = profile.corner
+    last = n - 1 - profile.just_before_corner(creep)  # segment of the plunge, before the spin
     chosen, corner = float(profile.psi[n]), float(profile.standoff[n])
     psi = chosen + np.arange(-np.pi, np.pi + step / 2, step)
     kappa, theta_psi = critical(drilling, branch, np.full_like(psi, corner), psi)
     here = critical(drilling, branch, np.array([corner]), np.array([chosen]))[0][0]
-    return Bracket(psi, kappa, theta_psi, chosen, here, np.asarray(deg_per_mm(profile.twist_rate[[n - 1, n]])))
+    return Bracket(psi, kappa, theta_psi, chosen, here, np.asarray(deg_per_mm(profile.twist_rate[[last, n]])))
 
 
 def _between(kappa: Array, slopes: Array) -> npt.NDArray[np.bool_]:

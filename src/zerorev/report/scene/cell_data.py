@@ -140,7 +140,10 @@ def track_data(
         return None
     x = signed_distance(profile, path.distance)
     seconds = np.minimum(path.distance, corner) / settings.feed_plunge + np.maximum(x, 0.0) / settings.feed_retract
-    seconds += settings.of(drilling.hole).cycle.dwell * (x > 0)
+    settings = settings.of(drilling.hole)
+    # where the tool spins on, it creeps in meanwhile
+    spins = np.clip(1 + x / settings.creep, 0.0, 1.0) if settings.creep else x > 0
+    seconds = seconds + settings.cycle.dwell * spins
     known = np.flatnonzero(reached)
     nearest = known[np.abs(np.arange(reached.size)[:, None] - known).argmin(axis=1)]
     return {

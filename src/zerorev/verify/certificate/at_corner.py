@@ -41,13 +41,14 @@ def planned_corner(
         certificate: of its legs.
     """
     motion, corner = hole_plan.motion, hole_plan.corner
-    if motion is None or corner is None or corner.kind != "joint" or certificate.verdict == "refuted":
+    if motion is None or corner is None or corner.kind not in ("joint", "spin") or certificate.verdict == "refuted":
         return certificate
-    joints = corner_figures(robot, tool, hole_plan.hole, motion, corner.reach).joints
+    joints = corner_figures(robot, tool, hole_plan.hole, motion, corner.reach, corner.spin_moves or 0).joints
     if not np.isfinite(joints).all():
         return _with(certificate, ["the joint moves at the corner could not be followed"], proven=False)
     exact = [[arb(float(angle)) for angle in row] for row in joints]
-    return near_the_axis(robot, tool, settings, hole_plan, [("", exact)], 0.0, certificate)
+    corners = [("", exact[k : k + 3]) for k in range(len(exact) - 2)]
+    return near_the_axis(robot, tool, settings, hole_plan, corners, 0.0, certificate)
 
 
 def near_the_axis(

@@ -44,7 +44,7 @@ def bracket(session: Session) -> None:
             words.set_text("")
             drawn.show(options(None, ()))
             return
-        rates = bracket_of(Drilling.of(job, hole), motion.profile, motion.branch, STEP)
+        rates = bracket_of(Drilling.of(job, hole), motion.profile, motion.branch, STEP, job.settings.of(hole).creep)
         words.set_text(sentence(rates, job.robot.joint_names))
         drawn.show(options(rates, job.robot.joint_names))
 
