@@ -11,10 +11,9 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.cad.chosen import ALL, SIDE, chosen, unlikely_unit
 from zerorev.files.cad.dxf import dxf_holes, found_in_dxf
-from zerorev.files.cad.found import BLIND, COUNTERBORED, COUNTERSUNK, FoundHole, FoundHoles
+from zerorev.files.cad.found import BLIND, COUNTERBORED, COUNTERSUNK, TIP, FoundHole, FoundHoles
 from zerorev.files.cad.select_form import SelectForm
 from zerorev.files.cad.step import found_in_step, step_holes
-from zerorev.files.cad.step_holes import TIP
 from zerorev.files.hole_meaning import Meaning, as_in_a_job
 from zerorev.files.schema import HoleForm, JobFile
 from zerorev.files.table_units import Unit

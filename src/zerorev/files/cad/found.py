@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from zerorev.model._arrays import Array
 
 __all__ = [
-    "BLIND", "CIRCLE", "COUNTERBORED", "COUNTERSUNK", "POINT", "THROUGH", "FoundHole", "FoundHoles", "Solid", "Wall",
+    "BLIND", "CIRCLE", "COUNTERBORED", "COUNTERSUNK", "POINT", "THROUGH", "TIP", "FoundHole", "FoundHoles", "Solid",
+    "Wall",
 ]  # fmt: skip
 
 THROUGH, BLIND, COUNTERSUNK, COUNTERBORED = "through", "blind", "countersunk", "counterbored"
 CIRCLE, POINT = "circle", "point"  # of a drawing, which does not say how a hole is
+TIP = "drill point"  # begins a note of a depth to the tip of one
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from zerorev.files.cad.found import BLIND, COUNTERBORED, COUNTERSUNK, THROUGH, FoundHole, Solid, Wall
+from zerorev.files.cad.found import BLIND, COUNTERBORED, COUNTERSUNK, THROUGH, TIP, FoundHole, Solid, Wall
 
-__all__ = ["TIP", "holes_of"]
+__all__ = ["holes_of"]
 
 ONE_AXIS = 0.02  # [mm] between the feet of axes that are one
 PARALLEL = 1e-4  # [1] between the entries of d d^T of their directions
@@ -28,7 +28,6 @@ CLOSED = 0.5  # [rad] of the circle that may be missing, as where a keyway is cu
 HALF = np.pi + 0.2  # [rad] of the circle that is missing at the end of a slot, and somewhat more
 BEYOND = 0.05  # [mm] past an end where the material is asked for
 LOW, HIGH = 0, 1
-TIP = "drill point"  # begins a note of a depth to the tip of one
 
 
 @dataclass(frozen=True)
