@@ -386,7 +386,7 @@ def test_a_program_of_several_files(published, plan_of, monkeypatch, tmp_path):
     def texts(program, name, findings, version):
         return {name: "begin\n", f"{name}_data": "points\n"}
 
-    monkeypatch.setitem(DIALECTS, "krl", replace(DIALECTS["krl"], suffix=".main", texts=texts))
+    monkeypatch.setitem(DIALECTS, "krl", replace(DIALECTS["krl"], suffix=".main", texts=texts, weighs_digits=True))
     plan = tmp_path / "plan.json"
     write_plan(plan_of(published(1)), plan)
     assert main(["export", str(plan), "-o", str(tmp_path / "out.main")]) == 0

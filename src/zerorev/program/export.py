@@ -17,6 +17,7 @@ from zerorev.program.dialects import dialect_for
 from zerorev.program.neutral import build_program
 from zerorev.program.preflight import preflight
 from zerorev.program.retract import retract_of
+from zerorev.program.rounding import turned_by_digits
 from zerorev.program.selection import Selection, number_of, selection
 from zerorev.verify.check import subject, verify_hole
 from zerorev.workers import Machines, Workers
@@ -147,6 +148,11 @@ def exporting(
     _refuse_errors(findings)
     called = dialect.program_name(name or wanted.name)
     files = dialect.write(program, called, findings, version)
+    if not dialect.weighs_digits and (
+        turned := turned_by_digits(plan, [hole.id for hole in program.holes], dialect.read(files))
+    ):
+        findings = (*findings, *turned)
+        files = dialect.write(program, called, findings, version)
     return Exported(files, (*findings, *_sizes(files)), called, len(program.holes))
 
 

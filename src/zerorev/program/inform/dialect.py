@@ -29,5 +29,6 @@ INFORM = Dialect(
     lambda part: ("CALL", "JOB:", part),
     "TOOL",
     examine=examine,
+    weighs_digits=True,
     most_holes=_most_holes,
 )

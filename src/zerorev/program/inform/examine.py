@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from zerorev.model.finding import Finding
-from zerorev.model.plan import named_holes
 from zerorev.program.inform.needs import cannot_say, needs, too_slow
 from zerorev.program.inform.rounded import rounded
 from zerorev.program.inform.text import feed_written, feeds_of, joint_moves, share_written
 from zerorev.program.neutral import Program
+from zerorev.program.rounding import listed_joints
 
 __all__ = ["examine"]
 
@@ -79,13 +78,13 @@ def _pulses(program: Program) -> Iterator[Finding]:
         f"{along * 1e6:.1f} um deeper or less deep than planned, the drill up to {np.rad2deg(tilt):.4f} deg tilted",
     )
     turned = [(each.reversals > np.array(hole.reversals_per_joint), hole.id) for each, hole in holes]
-    yield from _listed(
+    yield from listed_joints(
         names,
         turned,
         "in whole pulses {which} would turn back where the plan does not, since a joint moves too little there, and "
         "the program cannot be certified. A greater min_rate_deg_per_mm, or a greater blend_mm with longer joint moves",
     )
-    yield from _listed(
+    yield from listed_joints(
         names,
         [(each.standing & ~more, hole_id) for (each, _), (more, hole_id) in zip(holes, turned, strict=True)],
         "{which} moves by less than a pulse on a joint move at the corner and stands there: no reversal, but the "
@@ -93,28 +92,9 @@ def _pulses(program: Program) -> Iterator[Finding]:
     )
     wrist = np.arange(6) == 4
     least = np.rad2deg(min(each.wrist for each, _ in holes))
-    yield from _listed(
+    yield from listed_joints(
         names,
         [(wrist & (each.wrist < NEAR_STRAIGHT), hole.id) for each, hole in holes],
         f"{{which}} comes to {least:.2g} deg of where the wrist is straight: the controller may slow a straight move "
         "down there, or stop with an alarm. Another posture, or the part elsewhere",
     )
-
-
-def _listed(
-    names: Sequence[str], joints: Sequence[tuple[npt.NDArray[np.bool_], str]], message: str
-) -> Iterator[Finding]:
-    """One warning of the joints and the holes of which something is so, where it is of any.
-
-    Args:
-        names: of the joints.
-        joints: which of them it is so of, shape (6,), and the hole's id; for each hole.
-        message: with `{which}` where the names of the joints stand.
-    """
-    holes = [hole_id for which, hole_id in joints if which.any()]
-    if holes:
-        of_any = np.any([which for which, _ in joints], axis=0)
-        which = " ".join(name for name, is_so in zip(names, of_any, strict=True) if is_so)
-        at = "" if len(holes) == 1 else f" (at {len(holes):,} holes: {named_holes(holes)})"
-        hole_id = holes[0] if len(holes) == 1 else None
-        yield Finding("warning", "controller", message.format(which=which) + at, hole_id)
