@@ -87,7 +87,7 @@ class TestPlanted:
         joints = evaluate(robot, tool, first.hole, first.profile, first.branch).motion.joints
         limits = replace(robot.limits, lower=joints.min(axis=0) - 0.03, upper=joints.max(axis=0) + 0.03)
         tight = replace(robot, limits=limits)
-        problem = weighted._WeightedLegs(Drilling(tight, tool, first.hole), settings)
+        problem = weighted.WeightedLegs(Drilling(tight, tool, first.hole), settings)
         found = problem.polished(min(problem.survey()))
         planted = cost(tight, tool, first.hole, settings, first.profile, first.branch)
         assert cost_of(tight, tool, first.hole, settings, found) <= planted
@@ -133,7 +133,7 @@ class TestNaiveTwin:
     def test_pairs_cost_what_the_motion_costs(self, robot, tool, position, name):
         """Legs judged one by one and joined, against the motion measured as a whole."""
         settings, hole = asking((name, 1.0)), position.hole
-        problem = weighted._WeightedLegs(Drilling(robot, tool, hole), settings)
+        problem = weighted.WeightedLegs(Drilling(robot, tool, hole), settings)
         for point in problem.survey():
             profile = straight_motion(hole.depth, point.psi_t, point.slopes, periodic=True)
             whole = cost(robot, tool, hole, replace(settings, min_rate=0.9 * settings.min_rate), profile, point.branch)

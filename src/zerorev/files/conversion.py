@@ -9,6 +9,7 @@ import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.robot_schema import BaseInRootForm, DynamicsForm, FrameForm, GivenToolForm, RobotForm, ToolForm
 from zerorev.files.schema import CycleForm, HoleForm, JobFile, SettingsForm
+from zerorev.files.solids import bodies_data, bodies_from
 from zerorev.files.stated_forms import data_of, noun_from
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
@@ -50,8 +52,14 @@ X_DRILLS = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
 NOMINAL_DEPTH_MM = 1.0  # of a hole whose depth is to be found
 
 
-def robot_from(form: RobotForm, **sources: Any) -> Robot:
-    """The robot of a robot file or a plan file; `sources` as `Robot` has them."""
+def robot_from(form: RobotForm, folder: Path | None = None, **sources: Any) -> Robot:
+    """The robot of a robot file or a plan file.
+
+    Args:
+        form: as it was read.
+        folder: where paths in it start; None: no other file is opened.
+        sources: as `Robot` has them.
+    """
     joints = form.joints
     offset = six(rad(joints.offset_deg))
     arm = noun_from(ArmGeometry, form.geometry_mm, LENGTHS, sign=six(joints.sign), offset=offset)
@@ -69,6 +77,7 @@ def robot_from(form: RobotForm, **sources: Any) -> Robot:
         dynamics=_dynamics_from(form.dynamics),
         display=noun_from(Display, form.display),
         base_in_root=None if form.base_in_root is None else _six_from(form.base_in_root),
+        bodies=bodies_from(form.bodies, folder, np.eye(4)),
         **sources,
     )
 
@@ -106,11 +115,14 @@ def robot_data(robot: Robot) -> dict[str, Any]:
 
 def _controller_data(robot: Robot) -> dict[str, Any]:
     """How the controller counts; a robot of which nothing is said has no key of it, as before these existed."""
-    data = {"display": data_of(robot.display)} if robot.display != Display() else {}
+    data: dict[str, Any] = {"display": data_of(robot.display)} if robot.display != Display() else {}
     if robot.pulses_per_deg is not None:
         data |= data_of(robot, ("pulses_per_deg",))
     if robot.base_in_root is not None:
         data["base_in_root"] = _six_data(robot.base_in_root)
+    if robot.bodies:
+        links = [body.link for body in robot.bodies]
+        data["bodies"] = [{**each, "link": link} for each, link in zip(bodies_data(robot.bodies), links, strict=True)]
     return data
 
 
@@ -124,18 +136,25 @@ def _dynamics_data(dynamics: Dynamics) -> dict[str, Any]:
     return {"links": links} | data_of(dynamics)
 
 
-def tool_from(form: ToolForm, **sources: Any) -> Tool:
-    """The tool of a tool file, a job or a plan file; `sources` as `Tool` has them.
+def tool_from(form: ToolForm, folder: Path | None = None, **sources: Any) -> Tool:
+    """The tool of a tool file, a job or a plan file.
+
+    Args:
+        form: as it was read.
+        folder: where paths in it start; None: no other file is opened.
+        sources: as `Tool` has them.
 
     Raises:
         InputError: a mass without its centre, or the other way round; a mass that no body has.
     """
     with inside(f"tool {form.name}"):
         load = _load_from(form)
-    R = rotation_rpy(*rad(form.rpy_deg))
-    if isinstance(form, GivenToolForm) and form.tool_x == "drill":
-        R = R @ X_DRILLS
-    return Tool(form.name, transform(R, m(form.tcp_mm)), **sources, load=load)
+        R = rotation_rpy(*rad(form.rpy_deg))
+        if isinstance(form, GivenToolForm) and form.tool_x == "drill":
+            R = R @ X_DRILLS
+        T_flange_tcp = transform(R, m(form.tcp_mm))
+        bodies = bodies_from(form.bodies, folder, T_flange_tcp)
+    return Tool(form.name, T_flange_tcp, **sources, load=load, bodies=bodies)
 
 
 def _load_from(form: ToolForm) -> Load | None:
@@ -154,6 +173,7 @@ def tool_data(tool: Tool) -> dict[str, Any]:
     T = tool.T_flange_tcp
     weight: dict[str, Any] = {} if tool.load is None else data_of(tool.load)
     numbers: dict[str, Any] = plain({"tcp_mm": mm(T[:3, 3]), "rpy_deg": deg(rpy_of(T[:3, :3]))} | weight)
+    numbers |= {"bodies": bodies_data(tool.bodies)} if tool.bodies else {}
     return {"name": tool.name} | numbers | {"sha256": _fingerprint(numbers)}
 
 

@@ -27,6 +27,7 @@ from zerorev.files.plan_data import FORMS, plan_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
 from zerorev.files.robot_schema import RobotFile, ToolFile
 from zerorev.files.schema import JobFile, SettingsForm
+from zerorev.files.solids import obstacles_from
 from zerorev.files.stated_forms import Form
 from zerorev.files.table_units import Unit
 from zerorev.files.text import Document, json_document, json_text, read_bytes, read_text
@@ -82,6 +83,7 @@ def read_robot(name_or_path: str | Path, folder: str | Path | None = ".") -> Rob
     with inside(document.file):
         return robot_from(
             form,
+            _folder_of(document, folder),
             sources=form.sources,
             second_sources=tuple(form.second_sources),
             caveats=tuple(form.caveats),
@@ -101,7 +103,12 @@ def read_tool(name_or_path: str | Path, folder: str | Path | None = ".") -> Tool
     document = named_document(name_or_path, folder, "tools")
     form = checked(ToolFile, document)
     with inside(document.file):
-        return tool_from(form, sources=form.sources)
+        return tool_from(form, _folder_of(document, folder), sources=form.sources)
+
+
+def _folder_of(document: Document, folder: str | Path | None) -> Path | None:
+    """Where paths in a file start; None where no file may be opened."""
+    return None if folder is None else Path(document.file).parent
 
 
 def read_job(path: str | Path, *, depth_needed: bool = True, options: Mapping[str, Any] | None = None) -> Job:
@@ -277,11 +284,13 @@ def _job(document: Document, folder: Path | None, name: str, *, depth_needed: bo
         robot = read_robot(form.robot, folder)
     with inside(document.file):
         settings, T_base_part = with_feeds(form, settings_from(form)), frame_from(form.part_frame)
+        around = obstacles_from(form.part, form.fixtures, form.floor_mm, folder, T_base_part)
+        settings = replace(settings, surroundings=around)
     reference = form.psi_reference if isinstance(form.psi_reference, str) else tuple(form.psi_reference)
     jobs = []
     for n, (at, use) in enumerate(uses_of(form, document)):
         with inside(document.where((*at, "tool"))):
-            tool = read_tool(use.tool, folder) if isinstance(use.tool, str) else tool_from(use.tool)
+            tool = read_tool(use.tool, folder) if isinstance(use.tool, str) else tool_from(use.tool, folder)
         holes, notes, said = holes_of(form, document, folder, robot, tool, T_base_part, depth_needed=depth_needed)
         called = (form.name or name) + (f"_tool_{n + 1}" if n else "")
         job = Job(robot, tool, holes, settings, T_base_part, called, reference, notes, said)

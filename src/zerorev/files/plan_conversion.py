@@ -31,6 +31,7 @@ from zerorev.files.plan_schema import (
     PlanHole,
     ToolPlanForm,
 )
+from zerorev.files.solids import surroundings_from
 from zerorev.files.stated_forms import Form, agree, noun_from
 from zerorev.files.strokes_agree import further_strokes_agree, same_axis, stroke_differs
 from zerorev.files.text import Document
@@ -43,6 +44,7 @@ from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
+    Clearance,
     Corner,
     Event,
     HolePlan,
@@ -78,6 +80,7 @@ def plan_from(form: PlanFile | DepthFile) -> Plan:
         _same_numbers(form.tool.sha256, tool_data(tool)["sha256"])
     with inside("settings"):
         settings = settings_from(form.settings, before=True)
+    settings = replace(settings, surroundings=surroundings_from(form.surroundings))
     holes: Sequence[PlanHole | DepthHole] = form.holes
     ids = [hole.id for hole in holes]
     if len(set(ids)) < len(ids):
@@ -140,7 +143,7 @@ def _sequence_from(form: PlanFile | DepthFile | ToolPlanForm) -> dict[str, Any]:
     moves = tuple(
         noun_from(
             Transition, each, start=each.start, to=each.to, joints=rad(each.joints_deg),
-            findings=_nouns_from(Finding, each.findings),
+            findings=_nouns_from(Finding, each.findings), around=_noun_from(Clearance, each.around),
         )
         for each in form.transitions
     )  # fmt: skip
@@ -224,6 +227,7 @@ def _hole_plan_from(form: PlanHole, where: str) -> HolePlan:
             optimality=_noun_from(Optimality, form.optimality),
             lost_motion=_lost_motion_from(form.lost_motion),
             corner=_corner_from(form.corner),
+            clearance=_noun_from(Clearance, form.clearance),
             critical_rates=_critical_from(form),
             **_strokes_from(form, hole, where),
         )

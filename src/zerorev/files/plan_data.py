@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.files.plan_schema import DepthFile, PlanFile
+from zerorev.files.solids import surroundings_data
 from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, deg_per_mm, mm, plain
 from zerorev.model._arrays import Array
@@ -76,6 +77,7 @@ def sequence_data(plan: Plan) -> dict[str, Any]:
     moves = [
         {"from": move.start, "to": move.to, "joints_deg": deg(move.joints)}
         | data_of(move)
+        | ({} if move.around is None else {"around": data_of(move.around)})
         | {"findings": [data_of(finding) for finding in move.findings]}
         for move in plan.transitions
     ]
@@ -91,8 +93,15 @@ def plan_head(plan: Plan) -> dict[str, Any]:
         "tool": tool_data(plan.tool),
         "part_frame": frame_data(plan.T_base_part),
         "settings": settings_data(plan.settings),
+        **_around(plan),
         "findings": [data_of(finding) for finding in plan.findings],
     }
+
+
+def _around(plan: Plan) -> dict[str, Any]:
+    """What stands around; where nothing does, there is no key of it."""
+    around = plan.settings.surroundings
+    return {"surroundings": surroundings_data(around)} if around.obstacles else {}
 
 
 def answer_data(answer: HolePlan, strokes: Strokes) -> dict[str, Any]:
@@ -135,6 +144,7 @@ def _hole_data(answer: HolePlan) -> dict[str, Any]:
         "lost_motion": _lost_motion_data(answer.lost_motion),
         "corner": _corner_data(answer.corner),
         "strokes": _strokes_data(answer),
+        **({} if answer.clearance is None else {"clearance": data_of(answer.clearance)}),
         "findings": [data_of(finding) for finding in answer.findings],
     }
 

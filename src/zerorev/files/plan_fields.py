@@ -38,6 +38,7 @@ class Field(NamedTuple):
 # the digits of a file, and of the two ways in which a figure is computed
 DIGITS = 1e-9
 CLEARANCE = 0.02  # [mm]: it is found to 0.01 mm
+ANYWHERE = 1e6  # [mm]: where a distance is the least along a whole leg, nothing says where on it that is
 # of the least rate: planning narrows a dip down until it falls by less than 1e-6 of the rate between samples
 DIP = 2e-6
 # [deg/mm] on an arm of size 1: a joint that is slower than half of this does not move (conventions: signature)
@@ -81,6 +82,7 @@ HEAD_FIELDS: dict[str, Field] = {
     "tool": Field("input"),
     "part_frame": Field("input"),
     "settings": Field("input"),
+    "surroundings": Field("input"),
     "order": Field("input"),
     "transitions": _EXACT,
     "transitions.from": _EXACT,
@@ -90,6 +92,11 @@ HEAD_FIELDS: dict[str, Field] = {
     "transitions.changes_posture": _EXACT,
     "transitions.largest_axis_move_deg": Field("figure", DIGITS, 1e-5),
     "transitions.clearance_mm": Field("figure", DIGITS, CLEARANCE, optional=True),
+    "transitions.around": Field("figure", optional=True),
+    "transitions.around.least_mm": Field("figure", DIGITS, CLEARANCE),
+    "transitions.around.standoff_mm": _EXACT,
+    "transitions.around.between": _EXACT,
+    "transitions.around.certified": _EXACT,
     "transitions.findings": Field("finding"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),
@@ -161,6 +168,11 @@ HOLE_FIELDS: dict[str, Field] = {
     "lost_motion.events.standoff_mm": Field("figure", DIGITS, 1e-7),
     "lost_motion.events.friction": _EXACT,
     **_CORNER,
+    "clearance": Field("figure", optional=True),
+    "clearance.least_mm": Field("figure", DIGITS, CLEARANCE),
+    "clearance.standoff_mm": Field("figure", absolute=ANYWHERE),
+    "clearance.between": _EXACT,
+    "clearance.certified": Field("check"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6, optional=True),
     "strokes": Field("figure", optional=True),
     "strokes.depth_mm": Field("figure", DIGITS),

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 
+from zerorev.files.body_schema import SurroundingsForm
 from zerorev.files.robot_schema import FrameForm, RobotForm, ToolForm
 from zerorev.files.schema import CycleForm, SettingsForm
 from zerorev.files.stated_forms import Counted, Form, Many, SixMeasured, keys_of
@@ -30,6 +31,7 @@ from zerorev.model.measures import Measures
 from zerorev.model.plan import (
     Baseline,
     Certificate,
+    Clearance,
     Corner,
     Event,
     HolePlan,
@@ -133,6 +135,11 @@ class LostMotionForm(Form):
     events: Many[LostMotionEventForm] = Field(
         description="a list of joint, leg, standoff_mm and friction: where loads change their sign without a reversal"
     )
+
+
+@keys_of(Clearance, needed=True)
+class ClearanceForm(Form):
+    """How near a motion comes to what stands around the arm."""
 
 
 @keys_of(Corner, needed=True)
@@ -274,6 +281,11 @@ class PlanHole(Form):
         default=None,
         description="a mapping of how the motion turns round at the corner, and what that costs; or null: not said",
     )
+    clearance: ClearanceForm | None = Field(
+        default=None,
+        description="a mapping of least_mm, standoff_mm, between and certified: how near the hole's own moves come to "
+        "what stands around; left out: nothing is known to",
+    )
     strokes: Many[StrokeForm] | None = Field(
         default=None,
         min_length=1,
@@ -297,6 +309,9 @@ class TransitionForm(Form):
     to: Name | None = Field(description="text: id of the hole that is drilled next; or null: the home position")
     joints_deg: Annotated[list[SixDeg], Field(min_length=2, max_length=100)] = Field(
         description="a list of two or more entries of six numbers [deg]: where the move begins, stops and ends"
+    )
+    around: ClearanceForm | None = Field(
+        default=None, description="a mapping as clearance of a hole has it; left out: nothing is known to stand around"
     )
     findings: Many[FindingForm] = Field(description="a list of level, kind, message and hole")
 
@@ -341,6 +356,9 @@ class PlanHead(Form):
     tool: PlanTool = Field(description="a mapping: name, numbers and sha256 of the tool")
     part_frame: FrameForm = Field(description="a mapping of xyz_mm and rpy_deg: the part frame in the base frame")
     settings: SettingsForm = Field(description="a mapping of the job's settings")
+    surroundings: SurroundingsForm | None = Field(
+        default=None, description="a mapping of part, fixtures and floor_mm: what stands around; left out: nothing"
+    )
     order: Annotated[list[Name], Field(max_length=MOST_HOLES, fail_fast=True)] | None = Field(
         default=None,
         description="a list of the ids of the holes that have a motion, as they are drilled; or null: as listed",

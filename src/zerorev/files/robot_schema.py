@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
+from zerorev.files.body_schema import MOST_SOLIDS, LinkBodyForm, ToolBodyForm
 from zerorev.files.kuka_frames import KEYS, in_own_keys
 from zerorev.files.stated_forms import Form, Many, Words, keys_of
 from zerorev.files.values import AnglesDeg, Name, PlaceMm, SixDeg
@@ -125,6 +126,10 @@ class RobotForm(Form):
         description="a mapping of xyz_mm and rpy_deg: the base frame from which the controller counts, in the base "
         "frame of the arm; or null: they are one",
     )
+    bodies: Annotated[list[LinkBodyForm], Field(max_length=MOST_SOLIDS)] = Field(
+        default=[],
+        description="a list of solids on the links; none: capsules about the lines of the arm stand for them",
+    )
 
 
 class RobotFile(RobotForm):
@@ -146,6 +151,9 @@ class ToolForm(Form):
     tcp_mm: PlaceMm = Field(description="three numbers [mm]: the TCP in the flange frame")
     rpy_deg: AnglesDeg = Field(
         description="three numbers [deg]: roll, pitch, yaw of the TCP; R = Rz(yaw) Ry(pitch) Rx(roll)"
+    )
+    bodies: Annotated[list[ToolBodyForm], Field(max_length=MOST_SOLIDS)] = Field(
+        default=[], description="a list of solids; none: capsules about drill and holder stand for them"
     )
 
 

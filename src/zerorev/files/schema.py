@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Discriminator, Field, Tag, model_validator
 
+from zerorev.files.body_schema import MOST_SOLIDS, ObstacleForm, PartForm
 from zerorev.files.cad.select_form import SelectForm
 from zerorev.files.kuka_frames import with_direction
 from zerorev.files.robot_schema import GivenFrameForm, GivenToolForm
@@ -251,6 +252,21 @@ class JobFile(SettingsForm):
         default=None,
         description="a mapping of id, kind, diameter_mm, solid, face_mm, layers, side: which holes of a CAD file are "
         "drilled, and from where; left out: all",
+    )
+    part: (
+        Annotated[Annotated[Name, Tag("<text>")] | Annotated[PartForm, Tag("<mapping>")], Discriminator(kind)] | None
+    ) = Field(
+        default=None,
+        description="text: the path of an STL, OBJ, PLY, GLB or STEP file with the shape of the part, in the part "
+        "frame; or a mapping of file and unit",
+    )
+    fixtures: Annotated[list[ObstacleForm], Field(max_length=MOST_SOLIDS)] = Field(
+        default=[],
+        description="a list of solids that stand around: id, and box, or file with xyz_mm and rpy_deg; in the base "
+        "frame, or with frame: part",
+    )
+    floor_mm: Length | None = Field(
+        default=None, description="a number [mm]: height of the floor in the base frame; or null: none"
     )
     depth_mm: Depth | None = Field(
         default=None, description="a number above 0 [mm]: the stroke of each hole that has none of its own"

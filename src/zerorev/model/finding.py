@@ -22,6 +22,7 @@ FindingKind = Literal[
     "certificate",
     "channels",
     "clearance",
+    "collision",
     "controller",
     "corner",
     "corner_not_deepened",

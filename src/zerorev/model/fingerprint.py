@@ -6,12 +6,30 @@ import hashlib
 import struct
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from functools import cached_property
 
 import numpy as np
 
-__all__ = ["fingerprint"]
+__all__ = ["Digested", "fingerprint"]
 
 _FLOAT = struct.Struct("<d")
+
+
+class Digested:
+    """A dataclass with arrays: it is compared by its fingerprint, which is computed once."""
+
+    @cached_property
+    def digest(self) -> str:
+        """64 hexadecimal digits."""
+        pieces: list[bytes] = []
+        _add_fields(self, pieces)
+        return hashlib.sha256(b"".join(pieces)).hexdigest()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Digested) and self.digest == other.digest
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
 
 
 def fingerprint(*things: object) -> str:
@@ -47,9 +65,16 @@ def _add(thing: object, pieces: list[bytes]) -> None:
             _add(each, pieces)
     elif isinstance(thing, Mapping):
         _add(tuple(sorted(thing.items())), pieces)
+    elif isinstance(thing, Digested):
+        _add((type(thing).__qualname__, thing.digest), pieces)
     elif is_dataclass(thing):
-        _add(type(thing).__qualname__, pieces)
-        for field in fields(thing):
-            _add(getattr(thing, field.name), pieces)
+        _add_fields(thing, pieces)
     else:
         raise TypeError(f"no fingerprint of a {type(thing).__name__}")
+
+
+def _add_fields(thing: object, pieces: list[bytes]) -> None:
+    _add(type(thing).__qualname__, pieces)
+    assert is_dataclass(thing)
+    for field in fields(thing):
+        _add(getattr(thing, field.name), pieces)

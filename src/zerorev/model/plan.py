@@ -26,6 +26,7 @@ from zerorev.model.units import DEG, DEG_PER_MM, MM, PERCENT, S
 __all__ = [
     "Baseline",
     "Certificate",
+    "Clearance",
     "Corner",
     "Event",
     "HolePlan",
@@ -169,6 +170,25 @@ class Corner:
     spin_moves: Annotated[
         int | None, Count("joint moves in which it spins on, just before the corner", none="it does not", added=True)
     ] = None
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """How near a motion comes to what stands around the arm.
+
+    Attributes:
+        between: the body of the arm, and what it comes near to.
+    """
+
+    least: Annotated[float, Figure("least distance of any body from the part and the fixtures", MM)]
+    standoff: Annotated[
+        float | None, Figure("where that is", MM, null=None, none="on a move between holes", added=True)
+    ]
+    between: Annotated[tuple[str, ...], Texts("what is so near to what")]
+    certified: Annotated[
+        bool,
+        Switch("whether it is proven that no body comes nearer, nor that two of the arm's touch, between samples, too"),
+    ]
 
 
 @dataclass(frozen=True)
@@ -332,6 +352,7 @@ class HolePlan(Shown):
         unlike: what the file, from which this was read, says of its strokes otherwise than of their motions.
         strokes: all of them, of a hole that is drilled in several. Motion, corner and critical rates are those of the
             first one then, stand-offs counted from the hole's own target; the score is that of all together.
+        clearance: how near it comes to what stands around; None where nothing is known to.
     """
 
     hole: Hole
@@ -380,6 +401,7 @@ class HolePlan(Shown):
     feeds: tuple[float, float] | None = None
     strokes: tuple[Stroke, ...] = ()
     unlike: tuple[str, ...] = field(default=(), compare=False)
+    clearance: Clearance | None = None
 
 
 @dataclass(frozen=True)
@@ -391,6 +413,7 @@ class Transition:
         to: id of the hole that is drilled next; None: the home position.
         joints: where it begins and ends, and between which points it stops [rad], shape (n, 6).
         findings: what a user should know of it.
+        around: how near it comes to what stands around; None where nothing is known to.
     """
 
     start: str | None
@@ -410,6 +433,7 @@ class Transition:
         ),
     ] = None
     findings: tuple[Finding, ...] = ()
+    around: Clearance | None = None
 
 
 @dataclass(frozen=True)
@@ -473,6 +497,7 @@ for _noun in (
     LostMotion,
     Score,
     Verification,
+    Clearance,
     Baseline,
     Certificate,
     Within,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from zerorev.model.body import NOTHING_AROUND
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
@@ -19,7 +20,8 @@ def resized(
 ) -> tuple[Robot, Tool, Hole, Settings]:
     """Robot, tool, hole and settings at another size; every motion does the same to the joints.
 
-    Masses are left out: what they do depends on the size. So is the controller's base, on which no motion depends.
+    Masses are left out: what they do depends on the size. So is the controller's base, on which no motion depends, and
+    what the arm may touch: clearances are of the arm's own size.
 
     With a power of two as the factor no digit changes, so that an answer comes back exactly.
 
@@ -39,15 +41,16 @@ def resized(
             arm=arm._replace(a1=a1, a2=a2, b=b, c1=c1, c2=c2, c3=c3, c4=c4),
             dynamics=None,
             base_in_root=None,
+            bodies=(),
         ),
-        replace(tool, T_flange_tcp=T, load=None),
+        replace(tool, T_flange_tcp=T, load=None, bodies=()),
         replace(
             hole,
             target=hole.target * factor,
             depth=hole.depth * factor,
             profile=None if hole.profile is None else resized_profile(hole.profile, factor),
         ),
-        scaled(settings, factor),
+        replace(scaled(settings, factor), surroundings=NOTHING_AROUND),
     )
 
 

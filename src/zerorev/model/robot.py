@@ -10,6 +10,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, rotation_rpy, transform
+from zerorev.model.body import Body
 from zerorev.model.dynamics import Dynamics
 from zerorev.model.stated import Number, Switch, with_attributes
 from zerorev.model.stated import Six as SixNumbers
@@ -97,6 +98,7 @@ class Robot:
         display: what the controller shows of the joints. Limits, rates and reversals are of the joints that turn.
         base_in_root: the base frame from which the controller counts, in the base frame of the arm: x, y, z [m] and
             roll, pitch, yaw [rad]; None where they are one.
+        bodies: solids on its links; empty: none is stated, and capsules about its own lines stand for it.
     """
 
     name: str
@@ -118,6 +120,7 @@ class Robot:
         ),
     ] = None
     base_in_root: Six | None = None
+    bodies: tuple[Body, ...] = ()
 
     @property
     def T_root_base(self) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
+from zerorev.model.body import NOTHING_AROUND, Surroundings
 from zerorev.model.controller import Calls, ExternalAxis, check_controller
 from zerorev.model.corner import CONTROLLERS, ControllerName, CornerKind, Turning, known_controller, turning_of
 from zerorev.model.cycle import Cycle
@@ -47,6 +48,7 @@ class Settings:
         calls: programs of the controller that are called where the robot stands still.
         header: lines that begin with &, which a controller keeps before the program.
         cycle: how each hole is drilled that does not say so itself.
+        surroundings: what stands around the arm, which no body of it may touch.
     """
 
     min_rate: Annotated[
@@ -247,7 +249,8 @@ class Settings:
     clearance: Annotated[
         float,
         Number(
-            "least distance of the tool from the part on the moves between holes; nearer than that there is a finding",
+            "least distance of any body from the part and the fixtures; on the moves between holes there is a finding "
+            "where one comes nearer, and none drills nearer",
             MM,
             least=0,
             label="clearance from the part",
@@ -426,6 +429,7 @@ class Settings:
     calls: Calls = NO_CALLS
     header: tuple[str, ...] = ()
     cycle: Cycle = IN_ONE_GO
+    surroundings: Surroundings = NOTHING_AROUND
 
     def __post_init__(self) -> None:
         """Check ranges."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid, rotation_rpy, transform
+from zerorev.model.body import Body
 from zerorev.model.dynamics import Load
 
 __all__ = ["Tool"]
@@ -23,12 +24,14 @@ class Tool:
             plunge.
         sources: where the numbers come from.
         load: what it weighs, or None where that is not known.
+        bodies: solids on link 6, the flange; empty: none is stated, and capsules about its own lines stand for it.
     """
 
     name: str
     T_flange_tcp: Array
     sources: dict[str, str] = field(default_factory=dict, compare=False)
     load: Load | None = None
+    bodies: tuple[Body, ...] = ()
 
     def __post_init__(self) -> None:
         """Check that the transform is a rigid motion."""
@@ -36,6 +39,8 @@ class Tool:
         if not is_rigid(T):
             raise InputError("not a rotation and a translation", where=f"tool {self.name}, T_flange_tcp")
         object.__setattr__(self, "T_flange_tcp", T)
+        if any(body.link != 6 for body in self.bodies):
+            raise InputError("a body is not on the flange", where=f"tool {self.name}, bodies", accepted="link 6")
 
     @classmethod
     def from_mm_deg(

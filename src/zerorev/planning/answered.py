@@ -17,6 +17,7 @@ from zerorev.motion.critical import critical
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated, meets_threshold
 from zerorev.motion.loads import lost_motion_of
+from zerorev.planning.clearance import clearance_findings, clearance_of
 from zerorev.planning.corner import corner_findings, corner_of, countersink_findings
 from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
@@ -59,6 +60,7 @@ def answered(
         corner=corner,
         cycle_time=cycle_time(drilling, settings, answer.motion, corner),
         feeds=(settings.feed_plunge, settings.feed_retract),
+        clearance=clearance_of(drilling, settings, answer.motion),
     )
     answer = replace(answer, verified=verify_hole(robot, tool, settings, answer))
     return replace(answer, findings=motion_findings(drilling, settings, answer))
@@ -146,5 +148,6 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     # export refuses it; here it is known while the feed can still be chosen
     found += too_fast(drilling, answer.motion.branch, pieces_of(settings, answer.motion, answer.corner, way), "warning")
     found += countersink_findings(settings, answer)
+    found += clearance_findings(drilling, settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]
     return tuple(found)

@@ -21,10 +21,12 @@ from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.motion.kinematics import wrist_offset
 from zerorev.planning.answered import answered, motion_findings
+from zerorev.planning.clearance import none_clear
 from zerorev.planning.pecks import pecked
 from zerorev.planning.why_none import why_none, why_too_short
 from zerorev.search.bounds.proof import MOST_REVERSALS
 from zerorev.search.chip_break import chip_breaking, straight_motions
+from zerorev.search.clear import clear_of
 from zerorev.search.cut_short import cut_short
 from zerorev.search.cycles import chip_breaks, deepest_in_cycle, motions_that_break, raised, shallower
 from zerorev.search.deepest import Deepest
@@ -74,6 +76,9 @@ def plan(robot: Robot, tool: Tool, hole: Hole, settings: Settings | None = None)
     if hole.profile is None:
         found = optimum(drilling, settings)
         best = () if found.motion is None else gentlest_first(drilling, settings, found.motion)
+        best, hit = clear_of(drilling, settings, best)
+        if hit is not None and not best:
+            return _with_deepest(none_clear(drilling, settings, hit), settings, found.deepest)
         answer = _planned(drilling, settings, *best)
         if found.optimality is not None:
             answer = _with_optimality(drilling, settings, answer, best, found.optimality)

@@ -22,7 +22,7 @@ from zerorev.files.units import deg_per_mm, mm
 from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Motion, Optimality, Plan, Score, Stroke, Strokes, Verification
+from zerorev.model.plan import Clearance, HolePlan, Motion, Optimality, Plan, Score, Stroke, Strokes, Verification
 from zerorev.model.robot import Robot
 from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
@@ -30,6 +30,7 @@ from zerorev.motion.criteria import thesis_objective
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import Evaluation
 from zerorev.planning.answered import cycle_time, motion_findings
+from zerorev.planning.clearance import clearance_of
 from zerorev.planning.corner import corner_of
 from zerorev.planning.hole import evaluated_stroke, lever_findings, plan, plan_deepest
 from zerorev.planning.likely_mistakes import GUESSES
@@ -245,6 +246,7 @@ def check_hole(
         verified=stated.verified,
         cycle_time=cycle_time(drilling, settings, stated.motion, corner),
         optimality=_with_gap(stated.optimality, again.optimality, answer.score),
+        clearance=_clearance(Drilling(robot, tool, stated.hole, settings.limit_margin), settings, stated),
     )
     searched = Counter(again.findings) - Counter(motion_findings(drilling, settings, again) if again.motion else ())
     said = [*motion_findings(drilling, settings, replace(found, verified=verified)), *searched.elements()]
@@ -288,6 +290,13 @@ def _check_strokes(robot: Robot, tool: Tool, settings: Settings, stated: HolePla
 def _unknown(stated: HolePlan) -> tuple[FindingKind, ...]:
     """Findings of a figure that a file does not state."""
     return ("deepest",) if stated.deepest is None else ()
+
+
+def _clearance(drilling: Drilling, settings: Settings, stated: HolePlan) -> Clearance | None:
+    """How near the stated motion comes to what stands around; whether that is proven the check of the motion says."""
+    assert stated.motion is not None
+    found = clearance_of(drilling, settings, stated.motion)
+    return found if found is None or stated.clearance is None else replace(found, certified=stated.clearance.certified)
 
 
 def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from zerorev.collision.arms import setting_of
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Motion, Plan, Transition
@@ -93,7 +94,8 @@ class ToolTurn:
         """Spins and angles of the last joint where the lead-in begins and at the breakpoints [rad], (n,) each."""
         motion, plan = answer.motion, self._plan
         assert motion is not None
-        lead_in = find_lead_in(Drilling.of(plan, answer.hole), motion, plan.settings.lead_in)
+        setting = setting_of(plan.robot, plan.tool, plan.settings)
+        lead_in = find_lead_in(Drilling.of(plan, answer.hole), motion, plan.settings.lead_in, setting)
         return _spins(motion, lead_in), np.append(lead_in.joints[5], motion.joints[:, 5])
 
     def findings(self) -> tuple[Finding, ...]:

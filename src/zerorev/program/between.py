@@ -21,6 +21,7 @@ from zerorev.model.job import Settings
 from zerorev.model.plan import Transition
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.model.tool import Tool
+from zerorev.program.clear_moves import Around
 from zerorev.program.ways import Stop
 
 __all__ = ["HOME", "LONG_TURN", "THROUGH", "accelerations", "moves_between", "time_of_moves"]
@@ -136,15 +137,35 @@ def moves_between(robot: Robot, tool: Tool, settings: Settings, stops: Sequence[
     legs = [_Leg(one, other, home) for one, other in pairwise(stops)]
     if len(home) and stops:
         legs = [_Leg(None, stops[0], home), *legs, _Leg(stops[-1], None, home)]
-    if settings.part_thickness == 0:
-        return tuple(_transition(robot, settings, leg, None, ()) for leg in legs)
+    around = Around.of(robot, tool, settings)
+    if settings.part_thickness == 0 or settings.surroundings.part is not None:
+        legs = legs if around is None else [_led_over(around, robot, settings, leg, None) for leg in legs]
+        return tuple(_transition(robot, settings, leg, None, (), around) for leg in legs)
     part = _Part(robot, capsules_of(robot, tool), settings.part_thickness)
     closest = part.nearest(legs, part.capsules)
     through = _raised(part, settings, legs, closest)
+    if around is not None:
+        led = [leg if k in through else _led_over(around, robot, settings, leg, part) for k, leg in enumerate(legs)]
+        moved = [k for k, leg in enumerate(led) if leg is not legs[k]]
+        for k, near in zip(moved, part.nearest([led[k] for k in moved], part.capsules), strict=True):
+            legs[k], closest[k] = led[k], near
     return tuple(
-        _transition(robot, settings, leg, near.clearance, _findings(part, settings, leg, near, through.get(k)))
+        _transition(robot, settings, leg, near.clearance, _findings(part, settings, leg, near, through.get(k)), around)
         for k, (leg, near) in enumerate(zip(legs, closest, strict=True))
     )
+
+
+def _led_over(around: Around, robot: Robot, settings: Settings, leg: _Leg, part: _Part | None) -> _Leg:
+    """A move that touches what stands around, led over it where that can be; a safe height of 0 forbids it."""
+    if settings.safe_height == 0 or not around.touches(leg.joints):
+        return leg
+    for rise in RISES:
+        if rise * robot.size > (settings.safe_height or 0.0):
+            higher = leg.rising(rise * robot.size)
+            dips = part is not None and part.nearest([higher], part.lines)[0].clearance < -SLACK
+            if not dips and not around.touches(higher.joints):
+                return higher
+    return leg
 
 
 def _raised(part: _Part, settings: Settings, legs: list[_Leg], closest: list[Nearest]) -> dict[int, Nearest]:
@@ -177,7 +198,12 @@ def _raised(part: _Part, settings: Settings, legs: list[_Leg], closest: list[Nea
 
 
 def _transition(
-    robot: Robot, settings: Settings, leg: _Leg, clearance: float | None, met: tuple[Finding, ...]
+    robot: Robot,
+    settings: Settings,
+    leg: _Leg,
+    clearance: float | None,
+    met: tuple[Finding, ...],
+    around: Around | None,
 ) -> Transition:
     """A move as data, with what turns on it."""
     joints, one, other = leg.joints, leg.one, leg.other
@@ -193,7 +219,11 @@ def _transition(
         message = f"{leg.name} {robot.joint_names[axis]} turns by {np.rad2deg(turns[axis]):.0f} deg"
         found.append(Finding("warning", "long_turn", message, leg.hole))
     time = time_of_moves(robot, joints)
-    return Transition(start, to, joints, time, changes, float(turns[axis]), clearance, (*found, *met))
+    near = None if around is None else around.clearance(joints)
+    found += met
+    if around is not None:
+        found += around.findings(leg.name, joints, near, leg.hole)
+    return Transition(start, to, joints, time, changes, float(turns[axis]), clearance, tuple(found), near)
 
 
 def _findings(

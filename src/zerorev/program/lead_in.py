@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from zerorev.collision.arms import Setting
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import Motion
@@ -37,17 +38,18 @@ class LeadIn:
     findings: tuple[Finding, ...]
 
 
-def find_lead_in(drilling: Drilling, motion: Motion, wanted: float) -> LeadIn:
+def find_lead_in(drilling: Drilling, motion: Motion, wanted: float, setting: Setting | None = None) -> LeadIn:
     """The lead-in of a planned hole: as long as asked for, or as long as possible.
 
     Args:
         drilling: robot, tool and hole.
         motion: of the hole.
         wanted: length [m].
+        setting: what the arm must keep clear of on it; None: nothing is known to stand around.
     """
     profile = motion.profile
     depth, slope = float(profile.standoff[0]), float(profile.twist_rate[0])
-    line = Line(drilling, motion.branch, depth, float(profile.psi[0]), slope, motion.joints[0])
+    line = Line(drilling, motion.branch, depth, float(profile.psi[0]), slope, motion.joints[0], setting=setting)
     line = replace(line, directions=_directions(line, float(profile.standoff[0] - profile.standoff[1])))
     way = outward(line, wanted, SHORTEST * drilling.robot.size)
     if not way.why:

@@ -6,7 +6,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
+from zerorev.collision.arms import Setting
+from zerorev.collision.near import poses_keep
 from zerorev.model._arrays import Array
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import FULL_TURN, joints_along, outward_rates
@@ -39,6 +42,7 @@ class Line:
         slope: change of the spin per stand-off [rad/m].
         joints: controller angles with turns there [rad], shape (6,).
         directions: signs that the joints' rates must keep, shape (6,), 0 for one that must rest; None: they need not.
+        setting: what the arm must keep clear of; None: nothing is known to stand around.
     """
 
     drilling: Drilling
@@ -48,6 +52,7 @@ class Line:
     slope: float
     joints: Array
     directions: Array | None = None
+    setting: Setting | None = None
 
     def beyond(self, way: Outward) -> Line:
         """The line from the end of a way along it."""
@@ -83,6 +88,7 @@ class Line:
             (steps > may_step, "{} jumps"),
             (self.signs(rates) != kept, "{} would turn the other way"),
             ((joints < limits.lower) | (joints > limits.upper), at_limit),
+            (self._too_near(standoff), "{} comes too near to what stands around it"),
         )
         firsts = [
             (int(np.argmax(broken.any(axis=1))), order, text.format(" ".join(_names(names, broken))))
@@ -93,6 +99,13 @@ class Line:
             return None
         index, _, why = min(firsts)
         return _Trouble(index, why)
+
+    def _too_near(self, standoff: Array) -> npt.NDArray[np.bool_]:
+        """Whether the arm does not keep the clearance, shape (N, 6), the same for all joints."""
+        if self.setting is None:
+            return np.zeros((standoff.size, 6), dtype=np.bool_)
+        keeps = poses_keep(self.setting, self.drilling, self.branch, standoff, self._spin(standoff))
+        return np.repeat(~keeps[:, None], 6, axis=1)
 
     def _spin(self, standoff: Array) -> Array:
         return self.psi + self.slope * (standoff - self.standoff)

@@ -13,6 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
+from zerorev.collision.arms import setting_of
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
@@ -63,11 +64,12 @@ class Way:
             settings: that ask.
         """
         profile = motion.profile
-        lead_in = find_lead_in(drilling, motion, settings.lead_in)
+        setting = setting_of(drilling.robot, drilling.tool, settings)
+        lead_in = find_lead_in(drilling, motion, settings.lead_in, setting)
         surface = float(profile.standoff[0])
         first = float(profile.psi[0]) + float(profile.twist_rate[0]) * lead_in.length
-        ahead = Line(drilling, motion.branch, surface + lead_in.length, first, 0.0, lead_in.joints)
-        after = Line(drilling, motion.branch, surface, float(profile.psi[-1]), 0.0, motion.joints[-1])
+        ahead = Line(drilling, motion.branch, surface + lead_in.length, first, 0.0, lead_in.joints, None, setting)
+        after = Line(drilling, motion.branch, surface, float(profile.psi[-1]), 0.0, motion.joints[-1], None, setting)
         approach, retract = outward(ahead, settings.approach, 0.0), outward(after, settings.retract, 0.0)
         way = cls(lead_in, approach, retract, ahead.beyond(approach), after.beyond(retract), surface, None, ())
         way = replace(way, safe_height=settings.safe_height)

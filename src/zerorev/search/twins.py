@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from zerorev.collision.arms import setting_of
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import lost_motion
@@ -66,5 +67,6 @@ def _as_good(order: Order, one: Candidate, other: Candidate) -> bool:
 def led_in(drilling: Drilling, settings: Settings, motion: Candidate) -> float:
     """How much of the lead-in of a motion runs [m], rounded so that twins compare."""
     assert motion.evaluation.motion is not None
-    length = find_lead_in(drilling, motion.evaluation.motion, settings.lead_in).length
+    setting = setting_of(drilling.robot, drilling.tool, settings)
+    length = find_lead_in(drilling, motion.evaluation.motion, settings.lead_in, setting).length
     return round(length / SAME_LENGTH) * SAME_LENGTH

@@ -11,7 +11,7 @@ The exact answers for the single criteria are candidates, too, so what comes out
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import get_args
 
@@ -27,7 +27,7 @@ from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, 
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 
-__all__ = ["search_weighted"]
+__all__ = ["WeightedLegs", "apart", "search_weighted"]
 
 SLOPES = 24  # on one side of the critical rates
 VALLEYS, FINALISTS = 6, 2  # points of the grid that are zoomed in on; of those, that are zoomed in on finely
@@ -55,7 +55,7 @@ def search_weighted(drilling: Drilling, settings: Settings, known: Sequence[Cand
     found = [*(one for one in singly if one is not None), *known]
     if not found:
         return None
-    problem = _WeightedLegs(drilling, settings)
+    problem = WeightedLegs(drilling, settings)
     order = problem.order
     best = min(found, key=order.rank)
     if not best.keeps_threshold:
@@ -64,15 +64,16 @@ def search_weighted(drilling: Drilling, settings: Settings, known: Sequence[Cand
     seeds = [problem.point(one) for one in straight if order.rank(one)[:2] == order.rank(best)[:2]]
     if best.reversals == 0:
         seeds += problem.survey()
-    points = [problem.zoomed(seed, settings.min_rate, fine=False) for seed in _apart(seeds)]
-    found += [better for point in _apart(points)[:FINALISTS] if (better := problem.polished(point)) is not None]
+    points = [problem.zoomed(seed, settings.min_rate, fine=False) for seed in apart(seeds)]
+    found += [better for point in apart(points)[:FINALISTS] if (better := problem.polished(point)) is not None]
     if "lost_motion" in dict(settings.weights):  # it depends on the order of the legs
         swapped = (order.candidate(one.profile.reversed(), one.branch) for one in found)
         found += [one for one in swapped if one is not None]
     return min(found, key=order.rank)
 
 
-class _WeightedLegs(LegPairs):
+@dataclass(frozen=True)
+class WeightedLegs(LegPairs):
     """One hole, and the search for its best pair of legs."""
 
     @cached_property
@@ -210,7 +211,7 @@ def _offsets(sizes: int, phase: float) -> Array:
     return np.concatenate([-size, [0.0], size[::-1]])
 
 
-def _apart(points: list[Point]) -> list[Point]:
+def apart(points: list[Point]) -> list[Point]:
     """Best first, without those that lie next to a better one, or are it on the other wrist flip."""
     kept: list[Point] = []
     for point in sorted(points):

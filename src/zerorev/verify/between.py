@@ -14,6 +14,7 @@ import numpy as np
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan, Transition
 from zerorev.verify.arm import Skeleton, branch_of, skeleton
+from zerorev.verify.around import clear_between
 
 __all__ = ["moves_claimed"]
 
@@ -55,6 +56,7 @@ def _claimed(plan: Plan, holes: dict[str, HolePlan], move: Transition) -> Iterat
     branches = {branch_of(plan.robot.arm, at) for at, hole in zip((joints[0], joints[-1]), ends, strict=True) if hole}
     if (len(branches) > 1) != move.changes_posture:
         yield f"changes the posture: {len(branches) > 1}, the plan says {move.changes_posture}"
+    yield from clear_between(plan.robot, plan.tool, plan.settings, move.around, joints)
     if move.clearance is not None:
         met = _clearance(plan, [hole for hole in ends if hole is not None], joints)
         if met < move.clearance - CLEARANCE * plan.robot.size:

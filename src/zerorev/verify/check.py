@@ -15,6 +15,7 @@ from zerorev.model.robot import Robot
 from zerorev.model.strokes import stroke_by_stroke
 from zerorev.model.tool import Tool
 from zerorev.verify.arm import posture_of
+from zerorev.verify.around import clearance_claimed
 from zerorev.verify.claims import (
     as_asked,
     blend_keeps,
@@ -110,6 +111,11 @@ def verify_hole(
         on_blends += curve.psi.size
 
     failures += corner_keeps(robot, tool, settings, hole_plan)
+    failures += clearance_claimed(
+        robot, tool, settings, hole_plan.clearance,
+        [(piece.path.standoff, piece.path.psi, piece.joints) for _, piece in examined],
+        planned=hole_plan.status == "planned",
+    )  # fmt: skip
     figures = []
     for where, piece in examined:
         position, rotation = residual(robot, tool, hole, piece.path, piece.joints)
@@ -166,7 +172,9 @@ def subject(robot: Robot, tool: Tool, settings: Settings, hole_plan: HolePlan) -
         hole_plan: the hole, its motion and what is claimed of that.
     """
     own, settings = hole_plan, settings.of(hole_plan.hole)
-    return fingerprint(robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset, own.corner)
+    return fingerprint(
+        robot, tool, settings, own.hole, own.status, own.motion, own.score, own.wrist_offset, own.corner, own.clearance
+    )
 
 
 def _blends(profile: Profile, settings: Settings) -> list[tuple[int, float]]:

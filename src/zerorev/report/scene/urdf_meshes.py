@@ -6,7 +6,6 @@ arms, and what does not agree within 1 mm is refused: better no picture than one
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.errors import InputError
-from zerorev.files.text import read_bytes
+from zerorev.files.meshes import loaded
 from zerorev.files.urdf import Description, Joint, Visual, read_urdf
 from zerorev.model._arrays import Array
 from zerorev.model.robot import Robot
@@ -25,7 +24,6 @@ __all__ = ["Mesh", "read_meshes"]
 
 AGREE = 1e-3  # [m] between the axes of the two arms, and their flanges
 PARALLEL = 1e-3  # [1] between the directions of their axes
-FORMATS = ("stl", "obj", "ply", "glb")
 MOST_TRIANGLES = 400_000
 MOST_MESH = 24 * 2**20  # [bytes] of the file of one
 SAMPLES = 12  # joint positions at which the two arms are compared
@@ -176,7 +174,7 @@ def _turns(axis: Array, angles: Array) -> Array:
 
 
 def _mesh(visual: Visual, T: Array) -> Mesh:
-    shape: Any = _loaded(visual.file) if visual.file else _primitive(visual)
+    shape: Any = loaded(visual.file, MOST_MESH) if visual.file else _primitive(visual)
     scale = np.array(visual.size if visual.kind == "mesh" else (1.0, 1.0, 1.0))
     vertices = np.asarray(shape.vertices, dtype=float) * scale @ T[:3, :3].T + T[:3, 3]
     faces = np.asarray(shape.faces, dtype=np.uint32)
@@ -192,24 +190,3 @@ def _primitive(visual: Visual) -> Any:
     if visual.kind == "cylinder":
         return creation.cylinder(radius=size[0], height=size[1])
     return creation.icosphere(radius=size[0])
-
-
-def _loaded(path: Path) -> Any:
-    """The triangles of a mesh file; what it says of materials, and other files that it names, is not examined."""
-    import trimesh
-
-    kind = path.suffix.lower().lstrip(".")
-    if kind not in FORMATS:
-        raise InputError(
-            f"a mesh of the kind .{kind}", where=str(path), accepted=f"{', '.join(FORMATS)}; convert it, e.g. to STL"
-        )
-    try:
-        stream = io.BytesIO(read_bytes(path, "a mesh", MOST_MESH))
-        found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
-    except InputError:
-        raise
-    except Exception as error:  # any error of its readers
-        raise InputError(f"cannot be read: {error}", where=str(path), accepted="a sound mesh") from None
-    if not isinstance(found, trimesh.Trimesh) or not len(found.faces) or not np.isfinite(found.vertices).all():
-        raise InputError("holds no triangles", where=str(path), accepted="a sound mesh")
-    return found

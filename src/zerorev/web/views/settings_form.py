@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from nicegui import ui
@@ -163,6 +164,7 @@ def settings_of(values: dict[FieldPath, Any], job: Job) -> tuple[Settings | None
         return None, wrong
     try:
         settings = settings_from(SettingsForm.model_validate(data))
+        settings = replace(settings, surroundings=job.settings.surroundings)
     except InputError as error:
         at = next((path for path in values if str(path[0]).startswith(error.where)), ())
         return None, [(at, error)]

@@ -1,0 +1,97 @@
+"""How near a hole's own moves come to what stands around, and what a user should know of that."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from zerorev.collision.arms import Setting, setting_of
+from zerorev.collision.motions import paths_of
+from zerorev.collision.near import Nearest, Path, lines, nearest_of
+from zerorev.model.finding import Finding
+from zerorev.model.plan import Clearance, HolePlan, Motion
+from zerorev.model.settings import Settings
+from zerorev.motion.drilling import Drilling
+from zerorev.program.ways import Way
+
+__all__ = ["clearance_findings", "clearance_of", "near_words", "none_clear"]
+
+SLACK = 2e-5  # [m] to which a least distance is known
+
+
+def clearance_of(drilling: Drilling, settings: Settings, motion: Motion) -> Clearance | None:
+    """The least distance on a hole's own moves, its lead-in, approach and retract among them.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: how, with what stands around.
+        motion: of the hole.
+
+    Returns:
+        None where nothing is known to stand around. It is called certified; the check holds it to that.
+    """
+    setting = setting_of(drilling.robot, drilling.tool, settings)
+    if setting is None:
+        return None
+    pairs = setting.drilled & setting.against
+    found, _ = nearest_of(setting, drilling.robot, _all_paths(drilling, settings, motion), pairs)
+    return None if found is None else Clearance(found.distance, found.standoff, found.between, certified=found.proven)
+
+
+def _all_paths(drilling: Drilling, settings: Settings, motion: Motion) -> Iterator[Path]:
+    """The legs, the corner, and the way to them and away."""
+    profile, branch, way = motion.profile, motion.branch, Way.of(drilling, motion, settings)
+    yield from paths_of(drilling, settings, profile, branch)
+    first, last = way.ahead, way.after
+    start = (way.surface + way.lead_in.length, first.psi)
+    yield from lines(drilling, branch, [(way.surface, float(profile.psi[0])), start, (first.standoff, first.psi)])
+    yield from lines(drilling, branch, [(way.surface, float(profile.psi[-1])), (last.standoff, last.psi)])
+
+
+def clearance_findings(drilling: Drilling, settings: Settings, answer: HolePlan) -> Iterator[Finding]:
+    """That a motion comes nearer to something than asked for, and what is not held apart from the part.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: how.
+        answer: of the hole, with a motion.
+    """
+    near, hole = answer.clearance, answer.hole.id
+    if near is None or near.least >= settings.clearance - SLACK:
+        return
+    body, other = near.between
+    where = "" if near.standoff is None else f", {near.standoff * 1e3:.2f} mm out"
+    if near.least <= SLACK:
+        yield Finding("error", "collision", f"the {body} touches {other}{where}", hole)
+        return
+    wanted = f"{settings.clearance * 1e3:g} mm are asked for (clearance_mm)"
+    yield Finding(
+        "error", "collision", f"the {body} comes within {near.least * 1e3:.2f} mm of {other}{where}, and {wanted}", hole
+    )
+
+
+def near_words(setting: Setting, hit: Nearest) -> str:
+    """What a motion meets, in words."""
+    if not hit.between[0]:
+        return "it could not be proven to keep clear"
+    body, other = hit.between
+    guessed = any(each.guessed for each in setting.bodies if each.id in hit.between)
+    guess = " (how thick it is is a guess; bodies in the file of the robot or the tool say it)" if guessed else ""
+    met = f"touches {other}" if hit.distance <= 0 else f"comes within {hit.distance * 1e3:.2f} mm of {other}"
+    where = "" if hit.standoff is None else f", {hit.standoff * 1e3:.2f} mm out"
+    return f"the {body}{guess} {met}{where}"
+
+
+def none_clear(drilling: Drilling, settings: Settings, hit: Nearest) -> HolePlan:
+    """The answer of a hole of which no motion keeps clear of what stands around.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: how.
+        hit: what the best motion would have met.
+    """
+    setting = setting_of(drilling.robot, drilling.tool, settings)
+    assert setting is not None
+    wanted = f" by {settings.clearance * 1e3:g} mm (clearance_mm)" if settings.clearance > 0 else ""
+    message = f"no motion was found that keeps clear{wanted}: on the best one {near_words(setting, hit)}"
+    finding = Finding("error", "collision", message, drilling.hole.id)
+    return HolePlan(drilling.hole, "infeasible", drilling.wrist_offset, findings=(finding,))
