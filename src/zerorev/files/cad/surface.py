@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from zerorev.model._arrays import Array
 
@@ -71,6 +70,8 @@ def _nearest(places: Array, corners: Array) -> tuple[npt.NDArray[np.int64], Arra
     The triangles are sorted into classes of about one size. A triangle nearer than a distance has its centre within
     that distance and its own radius, so that of each class only a few have to be measured.
     """
+    from scipy.spatial import cKDTree  # which takes long to import, and few jobs need it
+
     centres = corners.mean(axis=1)
     radius = np.linalg.norm(corners - centres[:, None], axis=2).max(axis=1)
     sizes = np.floor(np.log2(radius)).astype(int)
