@@ -59,6 +59,7 @@ class Dialect:
         most_holes: how many holes one file may have, so that the controller takes it; None: any number.
         at_rest: how many statements stand before those that call programs of the controller.
         asks_for_base: whether the part frame may be counted from where the controller says that the robot stands.
+        no_retract: why no way out of a hole is offered, and what to do instead, for a message.
         weighs_digits: whether `examine` itself says which joints the digits of a program turn round.
     """
 
@@ -77,6 +78,7 @@ class Dialect:
     at_rest: int = 0
     asks_for_base: bool = False
     weighs_digits: bool = False
+    no_retract: str = ""
 
     @property
     def name(self) -> str:

@@ -203,7 +203,8 @@ def retract_program(
     """
     dialect = dialect_for(plan, controller)
     if dialect.retract_text is None:
-        why = f"a program that brings the drill out of a hole is not offered in {dialect.controller.language}"
+        why = f"a program that brings the drill out of a hole is not offered in {dialect.controller.language}: "
+        why += dialect.no_retract
         raise NotExportableError((why,))
     hole_id = ids_of_strokes(plan, [hole_id])[-1]
     plan = by_stroke(plan)

@@ -104,4 +104,6 @@ def test_by_the_command_line(five, tmp_path, capsys):
     job.write_text(job.read_text().replace("Plan file", "plan file"))
     assert main(["export", str(plan)]) != cli.FINE
     assert main(["export", str(plan), "--retract", "R0C0"]) != cli.FINE
-    assert "not offered in INFORM" in " ".join(capsys.readouterr().err.split())
+    said = " ".join(capsys.readouterr().err.split())
+    assert "not offered in INFORM: before it moves" in said
+    assert "$PX001" in said

@@ -17,7 +17,7 @@ from zerorev.model.job import Job
 from zerorev.model.profile import Profile
 from zerorev.planning.job import plan_job
 from zerorev.program.as_exported import as_exported
-from zerorev.program.export import export
+from zerorev.program.export import export, retract_program
 from zerorev.program.names import digest
 from zerorev.program.neutral import build_program
 from zerorev.program.tp.dialect import TP
@@ -312,3 +312,10 @@ def test_joints_that_decimals_bring_to_rest(fanuc, for_tp):
     assert bool(found) >= bool(still)
     for name in still:
         assert name in found[0]
+
+
+def test_no_way_out_of_a_hole_is_written_and_it_says_why(fanuc, for_tp):
+    with pytest.raises(
+        NotExportableError, match=r"not offered in TP.*registers.*belong to somebody; jog the drill out"
+    ):
+        retract_program(position_plan(fanuc, 1, **for_tp), "position 1", "tp")

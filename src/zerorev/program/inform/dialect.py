@@ -31,4 +31,6 @@ INFORM = Dialect(
     examine=examine,
     weighs_digits=True,
     most_holes=_most_holes,
+    no_retract="before it moves it has to see that the tool stands in this hole, and in which frame and units a job "
+    "reads its own position (GETS $PX001) is not known for sure; jog the drill out along Z of the tool",
 )

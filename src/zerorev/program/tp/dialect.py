@@ -31,4 +31,7 @@ TP = Dialect(
     "the user frame",
     examine=_examine,
     most_holes=most_holes,
+    no_retract="before it moves it has to see that the tool stands in this hole, for which it would write over "
+    "position registers, registers and a user frame of the controller, and they belong to somebody; jog the drill out "
+    "along Z of the tool",
 )
