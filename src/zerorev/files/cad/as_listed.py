@@ -18,6 +18,7 @@ from zerorev.files.hole_meaning import Meaning, as_in_a_job
 from zerorev.files.schema import HoleForm, JobFile
 from zerorev.files.table_units import Unit
 from zerorev.files.units import mm, plain
+from zerorev.files.values import MOST_HOLES
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import named_holes
@@ -132,6 +133,8 @@ def cad_holes(found: FoundHoles, asked: Asked, robot: Array | None) -> CadHoles:
         InputError: as `chosen`.
     """
     holes = chosen(found, asked.select, robot)
+    if len(holes) > MOST_HOLES:
+        raise InputError(f"has {len(holes):,} holes", accepted=f"{MOST_HOLES:,} or less: select")
     unit = unlikely_unit(found) if asked.unit is None else None
     said = [] if unit is None else [Finding("warning", "units", unit)]
     return CadHoles(holes, tuple(_form(hole, asked) for hole in holes), (*said, *_assumed(holes, asked)), found.notes)

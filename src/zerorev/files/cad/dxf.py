@@ -7,6 +7,7 @@ table of the job.
 from __future__ import annotations
 
 import io
+import logging
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ __all__ = ["dxf_holes", "found_in_dxf"]
 
 ACCEPTED = "a DXF drawing (.dxf)"
 MOST_IN_BLOCKS = 100_000  # entities of blocks, at each of their places
+KINDS = ("INSERT", "POINT", "CIRCLE", "ELLIPSE")
 MOST_NESTED = 20  # blocks within blocks
 ROUND = 1e-3  # by which the axes of an ellipse may differ, of a circle in a block that is stretched
 SAME = 0.01  # [mm] between the centres of circles that are one hole
@@ -76,7 +78,22 @@ def found_in_dxf(content: bytes, unit: Unit | None) -> FoundHoles:
     """As `dxf_holes` in this process."""
     need_ezdxf()
     _check_whole(content)
-    drawing = _drawing(content)
+    log = logging.getLogger("ezdxf")  # a line for each thing that is damaged, on the terminal
+    said, log.disabled = log.disabled, True
+    try:
+        return _found(content, unit)
+    except InputError:
+        raise
+    except Exception as error:  # any error of its reader
+        raise InputError(f"cannot be read as DXF: {error}", accepted=ACCEPTED) from None
+    finally:
+        log.disabled = said
+
+
+def _found(content: bytes, unit: Unit | None) -> FoundHoles:
+    from ezdxf import recover
+
+    drawing = recover.read(io.BytesIO(content))[0]
     stated, scale = _unit(int(drawing.header.get("$INSUNITS", 0)), unit)
     left = Counter[str]()
     hidden = {layer.dxf.name.casefold() for layer in drawing.layers if layer.is_off() or layer.is_frozen()}
@@ -97,16 +114,6 @@ def _check_whole(content: bytes) -> None:
         raise InputError("is not a DXF file", accepted=ACCEPTED)
     if b"EOF" not in content[-64:]:
         raise InputError("is cut short: its last line is missing", accepted="the whole DXF file")
-
-
-def _drawing(content: bytes) -> Any:
-    from ezdxf import recover
-    from ezdxf.lldxf.const import DXFError
-
-    try:
-        return recover.read(io.BytesIO(content))[0]
-    except (DXFError, OSError, ValueError, KeyError, AttributeError, TypeError, IndexError) as error:
-        raise InputError(f"cannot be read as DXF: {error}", accepted=ACCEPTED) from None
 
 
 def _unit(stated: int, given: Unit | None) -> tuple[str, float]:
@@ -139,7 +146,10 @@ def _marks(entities: Iterable[Any], layer: str, nested: int, left: Counter[str],
         if count[0] > MOST_IN_BLOCKS:
             what = f"has more than {MOST_IN_BLOCKS:,} entities within blocks"
             raise InputError(what, accepted="a drawing of the holes alone")
-        kind, own = entity.dxftype(), str(entity.dxf.get("layer", "0"))
+        kind = entity.dxftype()
+        if kind not in KINDS:
+            continue
+        own = str(entity.dxf.get("layer", "0"))
         own = layer if layer and own == "0" else own
         if kind == "INSERT":
             if nested == MOST_NESTED:
