@@ -14,8 +14,8 @@ from zerorev.errors import InputError
 from zerorev.files.cad.as_listed import Asked, CadHoles, cad_holes, is_cad, read_cad
 from zerorev.files.cad.chosen import ALL
 from zerorev.files.cad.listed_points import points_on
+from zerorev.files.cad.part_surface import surface_of
 from zerorev.files.cad.select_form import SelectForm
-from zerorev.files.cad.stl import surface_of
 from zerorev.files.conversion import frame_from, robot_from, settings_from, tool_from, with_feeds
 from zerorev.files.job_holes import cad_holes_of, holes_of
 from zerorev.files.named import named_document, shipped

@@ -1,8 +1,7 @@
-"""The surface of a part as triangles, out of a mesh or a STEP file."""
+"""The surface of a part as triangles, fine enough for normals, out of a mesh or a STEP file."""
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 
 import numpy as np
@@ -11,14 +10,14 @@ from zerorev.errors import InputError
 from zerorev.files.cad.needed import need_trimesh
 from zerorev.files.cad.step import triangles
 from zerorev.files.cad.surface import Faces
-from zerorev.files.text import MAX_BYTES, read_bytes
+from zerorev.files.meshes import MESH_FORMATS, STEP_FORMATS, loaded
+from zerorev.files.text import MAX_BYTES
 from zerorev.model._arrays import Array
+from zerorev.model.body import MOST_TRIANGLES
 
 __all__ = ["surface_of"]
 
-MESHES = ("stl", "obj", "ply")
-DEFLECTION = 0.02e-3  # [m] triangles may be so far from the surface of a STEP file
-MOST_TRIANGLES = 2_000_000
+DEFLECTION = 0.02e-3  # [m] triangles may be so far from the surface of a STEP file: less than where bodies are shown
 
 
 def surface_of(path: Path) -> tuple[Array, Faces]:
@@ -34,22 +33,14 @@ def surface_of(path: Path) -> tuple[Array, Faces]:
         InputError: the extra `cad` is not installed; another kind of file, damaged, without triangles, too large.
     """
     kind = path.suffix.casefold().lstrip(".")
-    if kind in ("step", "stp"):
+    if kind in STEP_FORMATS:
         vertices, faces = triangles(path, DEFLECTION)
         return vertices * 1e3, faces
-    if kind not in MESHES:
-        accepted = f"{', '.join(MESHES)}, step or stp"
+    if kind not in MESH_FORMATS:
+        accepted = f"{', '.join(MESH_FORMATS)}, {', '.join(STEP_FORMATS)}"
         raise InputError(f"a surface of the kind .{kind}", where=str(path), accepted=accepted)
     need_trimesh()
-    import trimesh
-
-    stream = io.BytesIO(read_bytes(path, "a mesh", MAX_BYTES))
-    try:
-        found = trimesh.load(stream, file_type=kind, force="mesh", resolver=None, skip_materials=True)
-    except Exception as error:  # any error of its readers
-        raise InputError(f"cannot be read: {error}", where=str(path), accepted="a sound mesh") from None
-    if not isinstance(found, trimesh.Trimesh) or not len(found.faces) or not np.isfinite(found.vertices).all():
-        raise InputError("holds no triangles", where=str(path), accepted="a sound mesh")
+    found = loaded(path, MAX_BYTES)
     if len(found.faces) > MOST_TRIANGLES:
         what = f"has {len(found.faces):,} triangles"
         raise InputError(what, where=str(path), accepted=f"{MOST_TRIANGLES:,} at most: a coarser mesh")
