@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import solids
-from zerorev.kernels.clearance import SPANNED, Arms, Desk, desk
+from zerorev.kernels.clearance import SPANNED, Arms, Desk, apart_at, desk
 from zerorev.kernels.solids import Solids
 from zerorev.model._arrays import Array
 from zerorev.model.arm_bodies import Pair, bodies_of, pairs_of
@@ -20,7 +21,7 @@ from zerorev.model.settings import Settings
 from zerorev.model.tool import Tool
 from zerorev.motion.kinematics import wrist_in_tcp
 
-__all__ = ["Setting", "setting_of"]
+__all__ = ["Setting", "setting_of", "standing_hits"]
 
 KEPT = 4  # settings that stay ready
 EDGES = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -79,6 +80,29 @@ def setting_of(robot: Robot, tool: Tool, settings: Settings) -> Setting | None:
         return None
     key = fingerprint(robot.arm, robot.bodies, tool.T_flange_tcp, tool.bodies, settings.surroundings)
     return _made(_Asked(key, settings.clearance, robot, tool, settings))
+
+
+def standing_hits(robot: Robot, tool: Tool, settings: Settings) -> Iterator[tuple[str, str]]:
+    """Bodies of the base and what stands in them, by their names; the floor aside.
+
+    Args:
+        robot: the arm.
+        tool: on its flange.
+        settings: with what stands around.
+    """
+    setting = setting_of(robot, tool, settings)
+    if setting is None:
+        return
+    own = setting.desk()
+    own.links[:] = np.append(np.eye(3).ravel(), np.zeros(3))
+    for b, body in enumerate(setting.bodies):
+        for o, obstacle in enumerate(setting.obstacles):
+            if body.link > 0 or obstacle.kind == "floor":
+                continue
+            own.known[:] = False
+            pair = setting.arms._replace(pairs=np.array([[b, len(setting.bodies) + o]]))
+            if apart_at(pair, 0, np.inf, own) <= 0:
+                yield body.id, obstacle.id
 
 
 @dataclass(frozen=True)

@@ -34,6 +34,7 @@ __all__ = [
     "lines",
     "moves",
     "nearest_of",
+    "poses_apart",
     "poses_keep",
 ]
 
@@ -192,6 +193,24 @@ def poses_keep(setting: Setting, drilling: Drilling, branch: int, standoff: Arra
     """
     out = np.empty(standoff.size, dtype=np.bool_)
     kernels.poses_keep(
+        drilling.robot.arm, drilling.plane, branch, np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
+        setting.arms, setting.drilled, setting.desk(), out,
+    )  # fmt: skip
+    return out
+
+
+def poses_apart(setting: Setting, drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Array:
+    """How much farther all pairs are apart at poses than they have to be [m], shape (n,); NaN out of reach.
+
+    Args:
+        setting: the bodies and what stands around.
+        drilling: robot, tool and hole.
+        branch: 0..7.
+        standoff: [m], shape (n,).
+        psi: [rad], shape (n,).
+    """
+    out = np.empty(standoff.size)
+    kernels.poses_apart(
         drilling.robot.arm, drilling.plane, branch, np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
         setting.arms, setting.drilled, setting.desk(), out,
     )  # fmt: skip

@@ -90,7 +90,10 @@ class ObstacleForm(SolidForm):
 class PartForm(Form):
     """The shape of the part."""
 
-    file: Name = Field(description=FILE + "; in the part frame")
+    file: Name | None = Field(default=None, description=FILE + "; in the part frame")
+    mesh: MeshForm | None = Field(
+        default=None, description="a mapping of vertices and faces, in place of file: a mesh of an answer"
+    )
     unit: Literal["mm", "m", "in"] | None = Field(default=None, description=UNIT)
 
 

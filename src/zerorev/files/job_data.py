@@ -10,6 +10,7 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.files.io import read_robot, robot_names
+from zerorev.files.solids import around_data
 from zerorev.files.units import deg, mm, plain
 from zerorev.files.yaml_text import yaml_text
 from zerorev.model._arrays import Array
@@ -43,6 +44,7 @@ def job_files(job: Job) -> dict[str, str]:
         "part_frame": frame_data(job.T_base_part),
         "psi_reference": _reference(job),
         **settings,
+        **around_data(job.settings.surroundings),
         "holes": [plain(_hole_data(hole, job.T_base_part)) for hole in job.holes],
     }
     stem = re.sub(r"[^A-Za-z0-9.-]+", "_", job.name).strip("._") or "job"

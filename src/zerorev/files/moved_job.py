@@ -64,10 +64,34 @@ def write_job(
         if isinstance(value, str) and (start / value).is_file() and not Path(value).is_absolute():
             there = os.path.relpath(start / value, end)
             part[key] = there if "/" in there or "\\" in there or key == "holes" else f"./{there}"
+    _lead_meshes(data, start, end)
     if not data["tools"]:
         del data["tools"]
     head = "".join(f"# {line}\n" for line in note.splitlines())
     write_text(target, head + yaml_text(data))
+
+
+def _lead_meshes(data: dict[str, Any], start: Path, end: Path) -> None:
+    """Let the paths of meshes in a job lead where they led.
+
+    Args:
+        data: of the job, changed in place.
+        start: its folder so far.
+        end: its folder from now on.
+    """
+
+    def led(path: str) -> str:
+        return path if Path(path).is_absolute() else os.path.relpath(start / path, end)
+
+    if isinstance(data.get("part"), str):
+        data["part"] = led(data["part"])
+    elif isinstance(data.get("part"), dict) and data["part"].get("file"):
+        data["part"] = {**data["part"], "file": led(data["part"]["file"])}
+    solids = [("fixtures", data)]
+    solids += [("bodies", each["tool"]) for each in (data, *data["tools"]) if isinstance(each.get("tool"), dict)]
+    for key, owner in solids:
+        if owner.get(key):
+            owner[key] = [{**each, "file": led(each["file"])} if each.get("file") else each for each in owner[key]]
 
 
 def _of_cad(data: dict[str, Any], source: Path) -> list[dict[str, Any]]:

@@ -24,7 +24,7 @@ from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform
 from zerorev.model.body import Body, Box, Capsule, Mesh, Obstacle, Shape, Surroundings
 
-__all__ = ["bodies_data", "bodies_from", "obstacles_from", "surroundings_data", "surroundings_from"]
+__all__ = ["around_data", "bodies_data", "bodies_from", "obstacles_from", "surroundings_data", "surroundings_from"]
 
 FLOOR = "floor"
 FLOOR_SIZE = (40.0, 40.0, 1.0)  # [m]
@@ -93,7 +93,14 @@ def obstacles_from(
     if part is not None:
         form = PartForm(file=part) if isinstance(part, str) else part
         with inside("part"):
-            found.append(Obstacle(PART, "part", _file(form.file, form.unit, folder), _written(T_base_part)))
+            if (form.file is None) == (form.mesh is None):
+                raise InputError("has no shape, or two", accepted="exactly one of file, mesh")
+            if form.mesh is not None:
+                mesh = mesh_from_text(form.mesh.vertices, form.mesh.faces)
+            else:
+                assert form.file is not None
+                mesh = _file(form.file, form.unit, folder)
+            found.append(Obstacle(PART, "part", mesh, _written(T_base_part)))
     for n, fixture in enumerate(fixtures):
         with inside(f"fixtures[{n}]"):
             if fixture.id in (PART, FLOOR):
@@ -137,6 +144,18 @@ def surroundings_data(around: Surroundings) -> dict[str, Any]:
         "fixtures": data["fixture"],
         "floor_mm": plain(mm(np.array(heights[0])).item()) if heights else None,
     }
+
+
+def around_data(around: Surroundings) -> dict[str, Any]:
+    """What stands around the arm, as a job has it; a key that says nothing is left out."""
+    data = surroundings_data(around)
+    part = data["part"]
+    keys = {
+        "part": None if part is None else {"mesh": part["mesh"]},
+        "fixtures": data["fixtures"],
+        "floor_mm": data["floor_mm"],
+    }
+    return {key: value for key, value in keys.items() if value not in (None, [])}
 
 
 def _floor(height_mm: float) -> Obstacle:

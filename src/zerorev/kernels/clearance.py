@@ -31,6 +31,7 @@ __all__ = [
     "legs_keep",
     "nearest",
     "pose_of",
+    "poses_apart",
     "poses_keep",
 ]
 
@@ -486,3 +487,30 @@ def poses_keep(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # t
         for k in range(arms.pairs.shape[0]):
             if out[n] and wanted[k] and apart_at(arms, k, arms.least[k], desk) < arms.least[k]:
                 out[n] = False
+
+
+@kernel
+def poses_apart(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # type: ignore[no-untyped-def]
+    """How much farther pairs of solids are apart at poses than they have to be, the least of them [m].
+
+    Args:
+        arm: `ArmGeometry`.
+        plane: `TwistPlane`.
+        branch: 0..7.
+        standoff: [m], shape (n,).
+        psi: [rad], shape (n,).
+        arms: `Arms`.
+        wanted: which pairs, shape (K,).
+        desk: `Desk`.
+        out: out, shape (n,); NaN out of reach.
+    """
+    path = np.zeros((2, 8))
+    for n in range(standoff.shape[0]):
+        path[0, 0], path[0, 1], path[1, 0], path[1, 1] = standoff[n], psi[n], standoff[n], psi[n]
+        if not pose_of(arm, plane, branch, path, 0.0, desk):
+            out[n] = np.nan
+            continue
+        out[n] = np.inf
+        for k in range(arms.pairs.shape[0]):
+            if wanted[k]:
+                out[n] = min(out[n], apart_at(arms, k, arms.least[k] + out[n], desk) - arms.least[k])

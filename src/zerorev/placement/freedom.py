@@ -9,6 +9,7 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
+from zerorev.model.body import NOTHING_AROUND
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.job import Job
 
@@ -137,4 +138,6 @@ def job_at(job: Job, place: Array) -> Job:
             zero = psi_zero_vector(vector, target, direction, job.tool, T, f"hole {hole.id}")
         return replace(hole, target=target, direction=direction / np.linalg.norm(direction), psi_zero=zero)
 
-    return replace(job, holes=tuple(map(moved, job.holes)), T_base_part=T)
+    # what stands around is not asked of a place
+    settings = replace(job.settings, surroundings=NOTHING_AROUND)
+    return replace(job, holes=tuple(map(moved, job.holes)), T_base_part=T, settings=settings)

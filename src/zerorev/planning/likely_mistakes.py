@@ -10,7 +10,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from zerorev.collision.arms import standing_hits
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of
+from zerorev.model.body import Mesh
 from zerorev.model.corner import controller_of, known_controller
 from zerorev.model.finding import Finding, FindingKind
 from zerorev.model.hole import Hole
@@ -31,6 +33,7 @@ SMALLEST_ARM = 0.2  # [m] lengths added up: a quarter of those of the smallest a
 FEWEST_DEGREES = np.deg2rad(10.0)  # no arm has all of its limits within
 SLOWEST_JOINT = np.deg2rad(20.0)  # [rad/s] every arm has a joint that is faster
 SHORTEST_TOOL = 10e-3  # [m] from the flange to the tip
+SMALLEST_MESH, LARGEST_MESH, FAR_FROM_PART = 20e-3, 100.0, 0.1  # [m], of the reach, [m]
 SMALLEST_PART, SEVERAL = 3e-3, 4  # [m] within which so many holes do not fit
 SHALLOWEST = 1e-3  # [m]
 SLOWEST_FEED, FASTEST_FEED = 0.1e-3, 0.2  # [m/s]
@@ -57,6 +60,8 @@ def likely_mistakes(job: Job) -> tuple[Finding, ...]:
         ("units", _radians("tool.rpy_deg", tool.T_flange_tcp)),
         ("units", _hole_units(robot, holes)),
         ("units", _setting_units(settings, holes)),
+        ("units", _part_units(robot, settings, holes)),
+        ("base_column", _touch_already(robot, tool, settings)),
         ("normals", _towards_the_robot(robot, holes)),
         ("tool_direction", _tool_direction(robot, tool)),
         ("frame_angles", _tool_angles(robot, tool)),
@@ -129,6 +134,35 @@ def _in_one_place(holes: Sequence[Hole]) -> bool:
     """Whether several holes are where there is no room for them."""
     targets = np.array([hole.target for hole in holes])
     return len(holes) >= SEVERAL and 1e-9 < float(np.linalg.norm(np.ptp(targets, axis=0))) < SMALLEST_PART
+
+
+def _part_units(robot: Robot, settings: Settings, holes: Sequence[Hole]) -> Iterator[str]:
+    """A part that is too small or too large for any, or far away from its holes."""
+    part = settings.surroundings.part
+    if part is None or not isinstance(part.shape, Mesh):
+        return
+    size = float(part.shape.extent.max())
+    if size < SMALLEST_MESH or size > LARGEST_MESH * robot.reach:
+        unit = "metres" if size < SMALLEST_MESH else "micrometres or inches"
+        yield (
+            f"the part is {size * 1e3:.4g} mm long: are the lengths of its file in {unit}? "
+            "part: {file: ..., unit: mm, m or in} says so"
+        )
+        return
+    at = (np.array([hole.target for hole in holes]) - part.T_base[:3, 3]) @ part.T_base[:3, :3]
+    low, high = part.shape.vertices.min(axis=0), part.shape.vertices.max(axis=0)
+    beside = np.linalg.norm(np.maximum(np.maximum(low - at, at - high), 0.0), axis=1)
+    if (beside > FAR_FROM_PART).all():
+        yield (
+            f"all holes lie {beside.min() * 1e3:.0f} mm or more beside the part: is its file in the part frame "
+            "(part_frame), and in millimetres (unit)?"
+        )
+
+
+def _touch_already(robot: Robot, tool: Tool, settings: Settings) -> Iterator[str]:
+    """What stands where the base of the arm is, which does not move: nothing is planned for it."""
+    for body, other in standing_hits(robot, tool, settings):
+        yield f"{other} touches the {body} of the robot, which does not move: is it where it stands?"
 
 
 def _hole_units(robot: Robot, holes: Sequence[Hole]) -> Iterator[str]:
