@@ -48,9 +48,10 @@ class Judge:
         """The program, and why it is refused or refuted, by reading and comparing alone; no ball arithmetic."""
         try:
             program = self.read(text)
+            drilled = self.wanted.beside(program)  # refuses more holes than the plan has
         except InputError as refused:
             return None, (str(refused),)
-        return program, tuple(reason for own in self.wanted.beside(program) for reason in own.wrong)
+        return program, tuple(reason for own in drilled for reason in own.wrong)
 
     def certified(self, program: WrittenProgram) -> bool:
         """Whether every hole is proven, as it is printed."""

@@ -25,7 +25,7 @@ LANGUAGE = Language(
     words=("J", "L", "C", "FINE", "CNT0", "CNT100", "P", "PR", "UF", "UT", "UFRAME_NUM", "UTOOL_NUM", "CALL", "mm",
            "deg", "N", "F", "U", "D", "T", "B", "X", "Z", "W", "J1", "J3", "msec", "sec", "cm/min", "mm/sec", "GP2"),
     statements=("   1:L P[2] 5mm/sec CNT100    ;", "   1:  PAUSE ;", "   1:  DO[1]=ON ;", "P[9]{", "};", "/END"),
-    rounded=lambda line: re.search(r"(mm|deg)(,|$)", line) is not None,
+    rounded=lambda line: re.match(r"\t.*(mm|deg)(,|$)", line) is not None,
     harmless=harmless,
 )  # fmt: skip
 MUST_PASS = ("last printed digit",)
@@ -53,7 +53,8 @@ def hold(judge, count, seed):
             # as printed it is either proven, by ball arithmetic, or not: both are right
             judge.certified(program)
         else:
-            assert edit.harmless is not None, (edit.kind, edit.text)
+            same = edit.text.split() == judge.text.split()  # a line that is cut may lose white space alone
+            assert edit.harmless is not None or same, (edit.kind, edit.text)
             # the reader sees no difference, so that the certificate of the original is its own
             assert program == original, (edit.kind, edit.harmless)
     return found
