@@ -8,27 +8,20 @@ the plan by geometry alone, so that a fault of `export` does not certify itself.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from decimal import Decimal
 from typing import NamedTuple
 
 import numpy as np
 
 from zerorev.model._arrays import Array, rotation_rpy, transform
-from zerorev.model.plan import Corner, HolePlan, Motion, Plan
+from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.settings import Settings
 from zerorev.model.written import WrittenFrame, WrittenHole, WrittenJoints, WrittenProgram
 from zerorev.verify.arm import branch_of, skeleton
-from zerorev.verify.printed import angle_slack, frame_of, joints_of, length_slack
+from zerorev.verify.paces import paces_differ, spins_differ, waits_differ
+from zerorev.verify.printed import angle_slack, frame_of, half_a_unit, joints_of, length_slack
 
 __all__ = ["Places", "frames_as_planned", "moves_as_planned", "places"]
 
-PLACE = 1e-5  # [m]: on which side of a place a move lies
-FEED = 1e-6  # [m/s]: six decimals
-TIME = 1e-5  # relative, of a time that is computed from angles
-WAIT = 1e-9  # [s]: a dwell is in hundredths, which every language prints
-TIP = {"m/s": 1.0, "cm/min": 1e-2 / 60}  # [m/s]: units in which the speed of the tip is given
 TURN = float(np.deg2rad(179.0))  # no move may turn the tool further: the short way round would be in doubt
 NUMBERED = transform(np.diag([1.0, -1.0, -1.0]), np.zeros(3))
 """The tool frame of a program that has only its number, Z along the plunge, in the tcp frame."""
@@ -178,10 +171,10 @@ def moves_as_planned(
 
     stops = hole_plan.corner is not None and hole_plan.corner.kind == "stop"
     yield from _blends_differ(plan, written, at, steps, 0.0 if stops else settings.turning.radius)
-    yield from _paces_differ(settings, plan.robot, written, at, steps, spins)
+    yield from paces_differ(settings, plan.robot, written, at.standoff, range(at.first, at.corner), spins)
     if hole_plan.corner is not None and count:
-        yield from _spins_differ(plan.robot, written, spins, hole_plan.corner)
-    yield from _waits_differ(written, at, settings.standing)
+        yield from spins_differ(plan.robot, written, spins, hole_plan.corner)
+    yield from waits_differ(written, at.corner, settings.standing)
 
 
 def _along(profile: Profile, distance: Array, standoff: Array) -> Array:
@@ -211,76 +204,8 @@ def _blends_differ(plan: Plan, written: WrittenHole, at: Places, steps: Array, a
             yield f"line {move.line} {'stops' if move.stops else 'is blended'}, the plan asks for {_mm(fits)} of blend"
         elif move.blend_mm is not None:
             blend = float(move.blend_mm) * 1e-3
-            if abs(blend - fits) > length_slack(plan.robot, move.end) + _half_a_unit(move.blend_mm) * 1e-3:
+            if abs(blend - fits) > length_slack(plan.robot, move.end) + half_a_unit(move.blend_mm) * 1e-3:
                 yield f"line {move.line} is blended by {_mm(blend)}, the plan asks for {_mm(fits)}"
-
-
-def _paces_differ(
-    settings: Settings, robot: Robot, written: WrittenHole, at: Places, steps: Array, spins: range
-) -> Iterator[str]:
-    """Feeds must be the job's; of a move that has a time, what comes of that."""
-    for k, move in enumerate(written.moves):
-        if k in spins:
-            continue
-        feed = settings.feed_plunge if at.first <= k < at.corner else settings.feed_retract
-        outer = max(float(at.standoff[k]), float(at.standoff[k + 1]))
-        if at.first <= k < at.corner and settings.breakthrough_feed is not None:
-            feed = settings.breakthrough_feed if outer <= settings.breakthrough_length + PLACE else feed
-        value, unit = move.pace
-        if (one := TIP.get(unit)) is not None:
-            found, slack = float(value) * one, FEED + _half_a_unit(value) * one
-        else:
-            # of a time, the digits of its last place, and of both ends
-            ends = (written.start if k == 0 else written.moves[k - 1].end), move.end
-            time, open_ = _time_by_share(robot, *ends, value) if unit == "%" else (value, _half_a_unit(value))
-            time = max(float(time), 1e-9)
-            found = abs(float(steps[k])) / time
-            apart = sum(length_slack(robot, end) for end in ends)
-            slack = FEED + (found * open_ + apart) / time
-        if abs(found - feed) > slack:
-            yield f"line {move.line} has a feed of {found * 1e3:g} mm/s, the plan {feed * 1e3:g} mm/s"
-
-
-def _spins_differ(robot: Robot, written: WrittenHole, spins: range, corner: Corner) -> Iterator[str]:
-    """The moves on which the tool spins on must be joint moves, and take the time of the dwell, each the same."""
-    wanted = (corner.dwell or 0.0) / len(spins)
-    for k in spins:
-        move, before = written.moves[k], written.start if k == 0 else written.moves[k - 1].end
-        value, unit = move.pace
-        if move.linear or unit not in ("s", "%"):
-            yield f"line {move.line} is a straight move, or has no time, where the tool is to spin on"
-            continue
-        time, open_ = _time_by_share(robot, before, move.end, value) if unit == "%" else (value, _half_a_unit(value))
-        if abs(float(time) - wanted) > open_ + WAIT + TIME * wanted:
-            yield f"line {move.line} takes {float(time):.4g} s, on which the tool is to spin on for {wanted:.4g} s"
-
-
-def _waits_differ(written: WrittenHole, at: Places, dwell: float) -> Iterator[str]:
-    """The tool must stand at the corner as long as asked for [s], and nowhere else."""
-    for k, move in enumerate(written.moves, start=1):
-        asked = dwell if k == at.corner else 0.0
-        if abs(float(move.wait) - asked) > WAIT:
-            yield f"line {move.line}: the tool stands at its end for {move.wait:f} s, the plan says {asked:g} s"
-
-
-def _time_by_share(
-    robot: Robot, begin: WrittenFrame | WrittenJoints, end: WrittenFrame | WrittenJoints, share: Decimal
-) -> tuple[float, float]:
-    """The time of a joint move by a share of what the joints can [%], and what its digits leave open of it [s].
-
-    The joint that would need longest at its full speed sets the time.
-    """
-    assert isinstance(begin, WrittenJoints)
-    assert isinstance(end, WrittenJoints)
-    turned = np.abs(joints_of(robot, end) - joints_of(robot, begin)) / robot.limits.speed
-    rounded = sum(angle_slack(robot, each) for each in (begin, end)) / float(robot.limits.speed.min())
-    of_all = max(float(share), 1e-9) / 100
-    time = float(turned.max()) / of_all
-    return time, rounded / of_all + time * _half_a_unit(share) / max(float(share), 1e-9)
-
-
-def _half_a_unit(number: Decimal) -> float:
-    return 0.5 * 10.0 ** int(number.as_tuple().exponent)
 
 
 def _world(plan: Plan) -> Array:

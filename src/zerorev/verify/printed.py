@@ -11,7 +11,7 @@ from zerorev.model._arrays import Array, rotation_rpy, transform
 from zerorev.model.robot import Robot
 from zerorev.model.written import WrittenFrame, WrittenJoints
 
-__all__ = ["angle_slack", "frame_of", "joints_of", "length_slack"]
+__all__ = ["angle_slack", "frame_of", "half_a_unit", "joints_of", "length_slack"]
 
 LEVER = 3.0  # [m] of an axis, at most
 PLAN = 2e-8  # [m], [rad] that the digits of a plan file leave open
@@ -57,6 +57,11 @@ def angle_slack(robot: Robot, printed: WrittenFrame | WrittenJoints) -> float:
     if printed.form == "zyx_deg":
         return float(np.deg2rad(3 * unit)) + PLAN
     return QUATERNION * unit + PLAN
+
+
+def half_a_unit(number: Decimal) -> float:
+    """By how much a printed number may be rounded."""
+    return 0.5 * 10.0 ** int(number.as_tuple().exponent)
 
 
 def _joints_slack(robot: Robot, printed: WrittenJoints) -> float:
