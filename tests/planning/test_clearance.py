@@ -18,6 +18,9 @@ from zerorev.motion.links import link_frames
 from zerorev.planning.hole import plan
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
+from zerorev.search.clear import clear_of, keeps_clear
+from zerorev.search.members import members
+from zerorev.search.optimum import best_motion
 from zerorev.verify.check import verify_hole
 
 MARGIN = 5e-3
@@ -110,3 +113,17 @@ def test_a_plan_file_keeps_what_stands_around_and_is_checked_again(job):
     nearer = replace(again, holes=(replace(again.holes[0], clearance=replace(again.holes[0].clearance, least=0.5)),))
     assert check_plan(nearer).wrong
     assert "surroundings" not in plan_to_json(replace(whole, settings=replace(settings, surroundings=NOTHING_AROUND)))
+
+
+def test_a_sequence_is_offered_nothing_that_hits(job):
+    hole = job.holes[0]
+    best = best_motion(Drilling(job.robot, job.tool, hole), job.settings)
+    _, box = in_the_way(job, hole)
+    settings = replace(job.settings, surroundings=Surroundings((box,)))
+    drilling = Drilling(job.robot, job.tool, hole)
+    (clear, *_), hit = clear_of(drilling, settings, (best,))
+    assert hit is not None
+    everything = members(drilling, job.settings, clear)
+    offered = members(drilling, settings, clear)
+    assert all(keeps_clear(drilling, settings, one) for one in offered)
+    assert 0 < len(offered) < len(everything)

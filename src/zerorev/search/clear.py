@@ -27,7 +27,7 @@ from zerorev.search.rank import Candidate, Order
 from zerorev.search.survey import survey
 from zerorev.search.weighted import WeightedLegs, apart
 
-__all__ = ["Cleared", "clear_of"]
+__all__ = ["Cleared", "clear_of", "keeps_clear"]
 
 FINALISTS = 4  # points that are zoomed in on finely, at most
 WORTH_A_ZOOM = 0.1  # relative: a point of the grid this much above the best one may still lie below it
@@ -65,6 +65,18 @@ def clear_of(drilling: Drilling, settings: Settings, best: Sequence[Candidate]) 
         return Cleared(clear)
     found = _Search(drilling.without_motion(), settings, setting).best()
     return Cleared(() if found is None else (found,), hits[0])
+
+
+def keeps_clear(drilling: Drilling, settings: Settings, motion: Candidate) -> bool:
+    """Whether a motion keeps clear of what stands around, as far as anything is known to.
+
+    Args:
+        drilling: what is drilled.
+        settings: with what stands around, and the clearance.
+        motion: of the hole.
+    """
+    setting = setting_of(drilling.robot, drilling.tool, settings)
+    return setting is None or hit_of(setting, drilling, settings, motion.profile, motion.branch) is None
 
 
 @dataclass(frozen=True)

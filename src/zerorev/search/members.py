@@ -11,6 +11,7 @@ import numpy as np
 from zerorev.model.job import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import lost_motion
+from zerorev.search.clear import keeps_clear
 from zerorev.search.optimum import on_each_branch
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.twins import led_in
@@ -46,7 +47,7 @@ def members(drilling: Drilling, settings: Settings, best: Candidate) -> tuple[Ca
         twin = order.candidate(one.profile.reversed(), one.branch)
         pair = [one] if twin is None or order.rank(twin)[:2] > as_good else [one, twin]
         kept += [each for each in _gentle(drilling, settings, pair) if each is not best]
-    return tuple(kept)
+    return tuple(one for one in kept if one is best or keeps_clear(drilling, settings, one))
 
 
 def _gentle(drilling: Drilling, settings: Settings, pair: list[Candidate]) -> list[Candidate]:
