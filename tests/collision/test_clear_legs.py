@@ -12,7 +12,7 @@ from oracles.solids import box_at, least_at
 from zerorev.collision.arms import setting_of
 from zerorev.collision.near import EXACT, first_hit, lines, moves, nearest_of
 from zerorev.files.io import read_job
-from zerorev.kernels.clearance import FREE, HIT, keeps
+from zerorev.kernels.clearance import FREE, HIT, UNDECIDED, keeps
 from zerorev.model.body import Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
@@ -53,7 +53,7 @@ def compared(seeds):
             moving = [body for body in setting.bodies if body.link > 0]
             for path, joints in legs:
                 verdict = keeps(
-                    job.robot.arm, path.plane, path.branch, path.ends, setting.arms, setting.against, 0.0,
+                    job.robot.arm, path.plane, path.branch, path.ends, setting.arms, setting.against, 10_000,
                     setting.lever_w, setting.desk(), np.empty(3),
                 )  # fmt: skip
                 least = least_at(job.robot, moving, joints, box).min()
@@ -139,3 +139,24 @@ def test_lines_are_cut_where_a_joint_turns_round(robot, tool):
         at = path.ends[0, :2] + np.linspace(0, 1, 400)[:, None] * (path.ends[1, :2] - path.ends[0, :2])
         steps = np.diff(np.unwrap(drilling.angles(at[:, 0], at[:, 1])[:, 4], axis=0), axis=0)
         assert ((steps > -1e-9).all(axis=0) | (steps < 1e-9).all(axis=0)).all()
+
+
+def test_a_leg_along_an_obstacle_is_given_up_after_so_many_pieces(robot, tool):
+    """The distance is the same all along, and all but what is asked for: no few pieces prove that it is kept."""
+    job = read_job(JOB)
+    drilling = Drilling(robot, tool, job.holes[0])
+    wall = box_at(job.holes[0].target + np.array([-0.1, 0.3, 0.0]), [0.6, 0.1, 0.6])
+    (path,) = list(lines(drilling, 4, [(0.002, 0.0), (0.0, 0.0)]))[:1]
+    setting = setting_of(robot, tool, replace(job.settings, surroundings=Surroundings((wall,)), clearance=0.0))
+    only = np.array([setting.names(k) == ("tool", "box") for k in range(len(setting.against))])
+    found, _ = nearest_of(setting, robot, [path], only)
+    assert found.distance > 0
+    close = replace(job.settings, surroundings=Surroundings((wall,)), clearance=found.distance - 3e-6)
+    setting = setting_of(robot, tool, close)
+    verdicts = [
+        keeps(
+            robot.arm, path.plane, 4, path.ends, setting.arms, only, most, setting.lever_w, setting.desk(), np.empty(3)
+        )
+        for most in (20, 100_000)
+    ]
+    assert verdicts == [UNDECIDED, FREE]

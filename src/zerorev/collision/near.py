@@ -42,6 +42,7 @@ EXACT = 1e-5  # [m]
 SAMPLES = 65  # of a line, to see where a joint turns round
 BISECTIONS = 40
 BLEND_PARTS = 8
+MOST_PIECES = 100_000  # of a path, to prove that it keeps clear
 NO_PLANE = TwistPlane((0.0,) * 3, (0.0,) * 9, (0.0,) * 9, (0.0,) * 3)  # of moves of all axes
 Mask = npt.NDArray[np.bool_]
 
@@ -229,7 +230,16 @@ def first_hit(setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask
     where, desk = np.empty(3), setting.desk()
     for number, path in enumerate(paths):
         verdict = kernels.keeps(
-            robot.arm, path.plane, path.branch, path.ends, setting.arms, pairs, 0.0, setting.lever_w, desk, where
+            robot.arm,
+            path.plane,
+            path.branch,
+            path.ends,
+            setting.arms,
+            pairs,
+            MOST_PIECES,
+            setting.lever_w,
+            desk,
+            where,
         )
         if verdict == kernels.FREE:
             continue

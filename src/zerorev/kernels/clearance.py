@@ -45,6 +45,7 @@ SHORTEST = 1e-9  # of a piece: what is not decided then stays so
 ROUNDING = 1e-9  # [m] more than the arithmetic of a pose can be off
 WIDE = 2.0  # [rad] half a piece may turn a joint by no more, so that a full turn is not taken for none
 FIRST = 2  # pieces to begin with
+MOST_OF_A_LEG = 1_000  # pieces, while legs are searched for: some 10 um are then kept to an obstacle along 10 mm
 
 
 class Arms(NamedTuple):
@@ -309,7 +310,7 @@ def _turns(branch, top, desk):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def keeps(arm, plane, branch, path, arms, wanted, extra, lever_w, desk, out):  # type: ignore[no-untyped-def]
+def keeps(arm, plane, branch, path, arms, wanted, most, lever_w, desk, out):  # type: ignore[no-untyped-def]
     """Whether pairs of solids keep their distances on a path on which no joint turns round.
 
     Args:
@@ -319,7 +320,8 @@ def keeps(arm, plane, branch, path, arms, wanted, extra, lever_w, desk, out):  #
         path: likewise.
         arms: `Arms`.
         wanted: which pairs, shape (K,).
-        extra: added to what they keep [m].
+        most: pieces that are examined: where a body moves along an obstacle, all but as near as it may be, any number
+            may be needed.
         lever_w: distance of the wrist centre from the drill axis [m].
         desk: `Desk`.
         out: out, shape (3,): where a pair does not keep its distance: the share of the path, the pair, and how much it
@@ -338,14 +340,15 @@ def keeps(arm, plane, branch, path, arms, wanted, extra, lever_w, desk, out):  #
         pose_of(arm, plane, branch, path, float(end), desk)
         for k in range(pairs):
             if wanted[k]:
-                least = arms.least[k] + extra
+                least = arms.least[k]
                 lack = apart_at(arms, k, least, desk) - least
                 if lack < 0.0:
                     out[0], out[1], out[2] = float(end), k, -lack
                     return HIT
-    top = FIRST
+    top, examined = FIRST, 0
     while top > 0:
         top -= 1
+        examined += 1
         a, b = desk.ends[top, 0], desk.ends[top, 1]
         m = 0.5 * (a + b)
         if not pose_of(arm, plane, branch, path, m, desk):
@@ -355,7 +358,7 @@ def keeps(arm, plane, branch, path, arms, wanted, extra, lever_w, desk, out):  #
         for k in range(pairs):
             if not desk.open[top, k]:
                 continue
-            least = arms.least[k] + extra
+            least = arms.least[k]
             need = least + _moves(arms, k, branch >= 0, half * standoff, half * psi, lever_w, desk) + ROUNDING
             found = apart_at(arms, k, need, desk)
             if found < least:
@@ -366,7 +369,7 @@ def keeps(arm, plane, branch, path, arms, wanted, extra, lever_w, desk, out):  #
             else:
                 left = True
         if left:
-            if half < SHORTEST or top + 2 > DEEP:
+            if half < SHORTEST or top + 2 > DEEP or examined > most:
                 return UNDECIDED
             _halve(desk, top, a, m, b)
             top += 2
@@ -394,7 +397,7 @@ def legs_keep(arm, plane, branch, depth, psi_t, slope, arms, wanted, lever_w, de
     for n in range(psi_t.shape[0]):
         path[1, 0] = depth
         path[0, 1], path[1, 1] = psi_t[n], psi_t[n] + slope[n] * depth
-        verdict = keeps(arm, plane, branch, path, arms, wanted, 0.0, lever_w, desk, where)
+        verdict = keeps(arm, plane, branch, path, arms, wanted, MOST_OF_A_LEG, lever_w, desk, where)
         out[n] = 0.0 if verdict == FREE else (where[2] if verdict == HIT else np.inf)
 
 
