@@ -13,7 +13,7 @@ from zerorev.collision.arms import setting_of
 from zerorev.collision.near import EXACT, first_hit, lines, moves, nearest_of
 from zerorev.files.io import read_job
 from zerorev.kernels.clearance import FREE, HIT, UNDECIDED, keeps
-from zerorev.model.body import Surroundings
+from zerorev.model.surroundings import Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.motion.kinematics import forward

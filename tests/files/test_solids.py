@@ -14,8 +14,9 @@ from zerorev.files.io import job_from_dict, plan_from_text, plan_to_json, read_j
 from zerorev.files.meshes import mesh_from_text, mesh_text, read_mesh
 from zerorev.files.solids import surroundings_data, surroundings_from
 from zerorev.files.text import json_text
-from zerorev.model.body import Body, Box, Capsule, Mesh, Surroundings
+from zerorev.model.body import Body, Box, Capsule, Mesh
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.surroundings import Surroundings
 
 trimesh = pytest.importorskip("trimesh")
 

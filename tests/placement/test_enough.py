@@ -42,7 +42,7 @@ def planted(monkeypatch, job):
             shift = drilling.hole.target - here[drilling.hole.id]
             return Deepest(max(0.0, 0.05 + float(rule(shift))))
 
-        monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
+        monkeypatch.setattr("zerorev.placement.margins.deepest_in_cycle", deepest)
 
     return plant
 
@@ -117,7 +117,7 @@ class TestPlanted:
             turned = np.rad2deg(np.arctan2(here[0] * now[1] - here[1] * now[0], here @ now))
             return Deepest(max(0.0, 0.07 - 0.001 * abs(turned - 14)))
 
-        monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
+        monkeypatch.setattr("zerorev.placement.margins.deepest_in_cycle", deepest)
         found = place(job, Freedom((-0.01, 0.01), turn=(-1.5, 1.5)), grid=41, enough=0.014)
         arm = max(0.1, *(np.linalg.norm((hole.target - T[:3, 3])[:2]) for hole in job.holes))
         assert np.rad2deg(found.nearest.place[3]) == pytest.approx(8, abs=0.05)

@@ -51,7 +51,7 @@ def planted(monkeypatch):
             asked.append(drilling.hole.id)
             return Deepest(max(0.0, float(rule(drilling.hole))))
 
-        monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
+        monkeypatch.setattr("zerorev.placement.margins.deepest_in_cycle", deepest)
         return asked
 
     return plant
@@ -324,7 +324,7 @@ class TestCommand:
                 raise KeyboardInterrupt
             return Deepest(0.5 - drilling.hole.target[1] ** 2)
 
-        monkeypatch.setattr("zerorev.placement.margins.deepest_as_drilled", deepest)
+        monkeypatch.setattr("zerorev.placement.margins.deepest_in_cycle", deepest)
         answer = tmp_path / "place.json"
         asked = ["place", str(job_file()), "--x-mm", "0:100", "--y-mm", "0:100", "-o", str(answer), "--workers", "1"]
         assert cli.main(asked) == cli.INTERRUPTED

@@ -115,7 +115,7 @@ def planted(monkeypatch, robot, tool):
         def deepest(drilling, settings):
             return Deepest(float(depth(*offset_of(drilling.robot, drilling.tool))))
 
-        monkeypatch.setattr(tool_offset, "deepest_as_drilled", deepest)
+        monkeypatch.setattr(tool_offset, "deepest_in_cycle", deepest)
         job = Job(robot, tool, (POSITION_1, replace(POSITION_1, id="other", depth=0.02)), OFF)
         return job, offset_curve(robot, tool, job.holes, OFF, offsets, angles)
 

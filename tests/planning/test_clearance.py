@@ -11,7 +11,7 @@ from oracles.solids import box_at, least_at
 from zerorev.collision.arms import setting_of
 from zerorev.files.io import plan_from_text, plan_to_json, read_job
 from zerorev.files.text import json_text
-from zerorev.model.body import NOTHING_AROUND, Surroundings
+from zerorev.model.surroundings import NOTHING_AROUND, Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
 from zerorev.motion.links import link_frames

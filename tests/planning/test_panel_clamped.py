@@ -10,7 +10,7 @@ import pytest
 from zerorev.collision.arms import setting_of
 from zerorev.collision.motions import hit_of
 from zerorev.files.io import read_job
-from zerorev.model.body import Surroundings
+from zerorev.model.surroundings import Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.planning.job import plan_job
 from zerorev.program.clear_moves import Around

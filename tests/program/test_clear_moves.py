@@ -11,7 +11,7 @@ from oracles.solids import box_at, least_at
 from zerorev.errors import NotExportableError
 from zerorev.files.io import job_from_dict
 from zerorev.model.arm_bodies import bodies_of, withdrawn
-from zerorev.model.body import Surroundings
+from zerorev.model.surroundings import Surroundings
 from zerorev.motion.kinematics import forward
 from zerorev.planning.job import plan_job
 from zerorev.planning.sequence import with_moves

@@ -10,7 +10,7 @@ import pytest
 from oracles.solids import box_at, least_at
 from zerorev.files.io import read_job
 from zerorev.model.arm_bodies import bodies_of
-from zerorev.model.body import Surroundings
+from zerorev.model.surroundings import Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.clearance import clearance_zone, nearest_at, solids_of
 

@@ -13,7 +13,7 @@ from zerorev.collision.arms import setting_of
 from zerorev.collision.motions import hit_of
 from zerorev.files.io import read_job
 from zerorev.model.arm_bodies import bodies_of
-from zerorev.model.body import Surroundings
+from zerorev.model.surroundings import Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.links import link_frames
 from zerorev.search.clear import clear_of

@@ -22,7 +22,8 @@ from zerorev.files.meshes import mesh_from_text, mesh_text, read_mesh
 from zerorev.files.units import deg, m, mm, plain, rad
 from zerorev.files.validation import inside
 from zerorev.model._arrays import Array, rotation_rpy, rpy_of, transform
-from zerorev.model.body import Body, Box, Capsule, Mesh, Obstacle, Shape, Surroundings
+from zerorev.model.body import Body, Box, Capsule, Mesh, Obstacle, Shape
+from zerorev.model.surroundings import Surroundings
 
 __all__ = ["around_data", "bodies_data", "bodies_from", "obstacles_from", "surroundings_data", "surroundings_from"]
 

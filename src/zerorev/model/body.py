@@ -12,7 +12,7 @@ from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite, is_rigid
 from zerorev.model.fingerprint import Digested
 
-__all__ = ["NOTHING_AROUND", "Body", "Box", "Capsule", "Mesh", "Obstacle", "Shape", "Surroundings"]
+__all__ = ["Body", "Box", "Capsule", "Mesh", "Obstacle", "Shape"]
 
 MOST_TRIANGLES = 2_000_000  # of one mesh
 
@@ -141,30 +141,3 @@ class Obstacle(Digested):
     def __post_init__(self) -> None:
         """Check the numbers."""
         _placed(self, "T_base")
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What stands around the arm.
-
-    Attributes:
-        obstacles: the part, fixtures and the floor; their ids differ.
-    """
-
-    obstacles: tuple[Obstacle, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Check that the ids differ."""
-        seen: set[str] = set()
-        for obstacle in self.obstacles:
-            if obstacle.id in seen:
-                raise InputError(f"the id '{obstacle.id}' is used twice", where="fixtures", accepted="ids that differ")
-            seen.add(obstacle.id)
-
-    @property
-    def part(self) -> Obstacle | None:
-        """The part, where its shape is known."""
-        return next((one for one in self.obstacles if one.kind == "part"), None)
-
-
-NOTHING_AROUND = Surroundings()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from zerorev.model.body import NOTHING_AROUND
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.model.stated import scaled
+from zerorev.model.surroundings import NOTHING_AROUND
 from zerorev.model.tool import Tool
 
 __all__ = ["resized", "resized_profile"]

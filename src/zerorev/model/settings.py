@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from zerorev.errors import InputError
-from zerorev.model.body import NOTHING_AROUND, Surroundings
 from zerorev.model.controller import Calls, ExternalAxis, check_controller
 from zerorev.model.corner import CONTROLLERS, ControllerName, CornerKind, Turning, known_controller, turning_of
 from zerorev.model.cycle import Cycle
 from zerorev.model.measures import CRITERIA, Measures
 from zerorev.model.stated import Choice, Nest, Number, Six, Switch, Weighed, Whole, check, with_attributes
+from zerorev.model.surroundings import NOTHING_AROUND, Surroundings
 from zerorev.model.units import DEG, DEG_PER_MM, MM, MM_S, NEWTON, NM_PER_RAD, Unit
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array, finite
-from zerorev.model.body import NOTHING_AROUND
 from zerorev.model.hole import Hole, psi_zero_vector
 from zerorev.model.job import Job
+from zerorev.model.surroundings import NOTHING_AROUND
 
 __all__ = ["AXES", "CLOSE", "Freedom", "frame_at", "job_at"]
 
