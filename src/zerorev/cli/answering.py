@@ -124,6 +124,7 @@ def run(
                 holes.append(final)
         said = (*said, *turns.findings())
         whole = replace(whole, further=_of_the_further_tools(job, strokes, machines))
+        others = [Shown(each, each.holes) for each in whole.further]
         if part is not None:
             part.finish(whole, changed, said)
     if output is not None and fresh:  # what was kept from another run was not checked by this one
@@ -139,9 +140,9 @@ def run(
         if whole.further:
             terminal.say(f"tool 1: {whole.tool.name}")
         shown.show()
-        for number, each in enumerate(whole.further, 2):
+        for number, (each, of_it) in enumerate(zip(whole.further, others, strict=True), 2):
             terminal.say(f"tool {number}: {each.tool.name}")
-            Shown(each, each.holes).show()
+            of_it.show()
         what = "plan" if strokes == "asked" else "depths"
         if output is not None:
             terminal.say(f"{what} written to {output}")
@@ -151,7 +152,7 @@ def run(
             terminal.say(f"no {what} written; give -o {what.upper()}.json to keep {'it' if what == 'plan' else 'them'}")
         # beside the answer, which is the same each time
         terminal.note(f"elapsed time {minutes(time.monotonic() - began)}")
-    return shown.sound and all(Shown(each, each.holes).sound for each in whole.further)
+    return shown.sound and all(of_it.sound for of_it in others)
 
 
 def _of_the_further_tools(job: Job, strokes: Strokes, machines: Machines) -> tuple[Plan, ...]:

@@ -14,7 +14,7 @@ from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
     from zerorev.model.plan import Plan
-    from zerorev.model.written import WrittenProgram
+    from zerorev.model.written import Drilled, WrittenProgram
     from zerorev.planning.restated import Checked
     from zerorev.program.dialect import Dialect
 
@@ -95,15 +95,12 @@ def check(
     if checked.as_stated and _passed(stated) <= _passed(checked.plan):
         remember(text)
     if program is not None:
-        from zerorev.model.strokes import by_stroke, together
-        from zerorev.program.as_exported import as_exported
+        from zerorev.model.strokes import together
         from zerorev.program.notes import calls, only_numbered
         from zerorev.verify.certificate.program import certify_program
 
         with terminal.busy("proving"):
-            checked = _of_the_program(checked, written, dialect, program.stem)
-            strokes = by_stroke(checked.plan)
-            drilled = as_exported(strokes, written, dialect, program.stem)
+            checked, strokes, drilled = _of_the_program(checked, written, dialect, program.stem)
             proven = together(checked.plan, certify_program(strokes, written, drilled))
             unexamined = (*calls(proven.settings), *only_numbered(written))
             checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *unexamined)))
@@ -136,27 +133,33 @@ def check(
     return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
 
 
-def _of_the_program(checked: Checked, written: WrittenProgram, dialect: Dialect, stem: str) -> Checked:
-    """The plan of the tool that a program is of: the one from which it differs least."""
+def _of_the_program(
+    checked: Checked, written: WrittenProgram, dialect: Dialect, stem: str
+) -> tuple[Checked, Plan, tuple[Drilled, ...]]:
+    """The plan of the tool that a program is of, the one from which it differs least: it, its strokes, what is drilled.
+
+    Raises:
+        InputError: the program drills more holes than any of them.
+    """
     from zerorev.model.strokes import by_stroke
     from zerorev.program.as_exported import as_exported
 
-    each_tool = (checked, *checked.further)
-    if len(each_tool) == 1:
-        return checked
-    found: list[tuple[int, Checked]] = []
+    found: list[tuple[Checked, Plan, tuple[Drilled, ...]]] = []
     why: InputError | None = None
-    for each in each_tool:
+    for each in (checked, *checked.further):
+        strokes = by_stroke(each.plan)
         try:
-            drilled = as_exported(by_stroke(each.plan), written, dialect, stem)
+            found.append((each, strokes, as_exported(strokes, written, dialect, stem)))
         except InputError as error:
             why = why or error
-            continue
-        found.append((sum(len(hole.wrong) + (hole.hole is None) for hole in drilled), each))
     if not found and why is not None:
         raise why
-    closest = min(found, key=lambda pair: pair[0])[1]
-    return replace(closest, plan=replace(closest.plan, further=()), further=())
+
+    def apart(one: tuple[Checked, Plan, tuple[Drilled, ...]]) -> int:
+        return sum(len(hole.wrong) + (hole.hole is None) for hole in one[2])
+
+    closest, strokes, drilled = min(found, key=apart)
+    return replace(closest, plan=replace(closest.plan, further=()), further=()), strokes, drilled
 
 
 def _passed(plan: Plan) -> set[tuple[int, str]]:

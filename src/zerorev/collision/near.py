@@ -6,7 +6,7 @@ holds where no joint turns round on it, so lines are cut where one does.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -193,10 +193,7 @@ def poses_keep(setting: Setting, drilling: Drilling, branch: int, standoff: Arra
         psi: [rad], shape (n,).
     """
     out = np.empty(standoff.size, dtype=np.bool_)
-    kernels.poses_keep(
-        drilling.robot.arm, drilling.plane, branch, np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
-        setting.arms, setting.drilled, setting.desk(), out,
-    )  # fmt: skip
+    _ask(kernels.poses_keep, setting, drilling, branch, standoff, psi, out)
     return out
 
 
@@ -211,11 +208,24 @@ def poses_apart(setting: Setting, drilling: Drilling, branch: int, standoff: Arr
         psi: [rad], shape (n,).
     """
     out = np.empty(standoff.size)
-    kernels.poses_apart(
+    _ask(kernels.poses_apart, setting, drilling, branch, standoff, psi, out)
+    return out
+
+
+def _ask(
+    kernel: Callable[..., None],
+    setting: Setting,
+    drilling: Drilling,
+    branch: int,
+    standoff: Array,
+    psi: Array,
+    out: Array | Mask,
+) -> None:
+    """Ask a kernel of poses, one answer each."""
+    kernel(
         drilling.robot.arm, drilling.plane, branch, np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
         setting.arms, setting.drilled, setting.desk(), out,
     )  # fmt: skip
-    return out
 
 
 def first_hit(setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask) -> Nearest | None:

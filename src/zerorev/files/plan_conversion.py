@@ -60,6 +60,7 @@ from zerorev.model.plan import (
     Within,
 )
 from zerorev.model.profile import Profile
+from zerorev.model.strokes import stroke_id
 
 __all__ = ["answer_from", "as_written", "plan_from", "written_motion"]
 
@@ -245,23 +246,21 @@ def _strokes_from(form: PlanHole, hole: Hole, where: str) -> dict[str, Any]:
     of_the_first = [each for each in form.strokes if getattr(each, "tool") == 0]  # noqa: B009
     if not of_the_first:
         raise InputError("is that of a further tool", where="strokes[0].tool", accepted="0, the first one")
+    feeds = [(float(m(each.feeds_mm_s.plunge)), float(m(each.feeds_mm_s.retract))) for each in of_the_first]
     for n, each in enumerate(of_the_first):
         at, own = f"strokes[{n}]", each.answer or form
         if (each.answer is None) != (len(of_the_first) == 1):
             accepted = "null for the only stroke, and for none of several"
             raise InputError("is null, or not", where=f"{at}.answer", accepted=accepted)
-        feeds = (float(m(each.feeds_mm_s.plunge)), float(m(each.feeds_mm_s.retract)))
         if each.answer is not None:
-            agree(f"{at}.answer.id", each.answer.id, f"{form.id}, stroke {n + 1}")
-            answer = replace(_hole_plan_from(each.answer, f"{where}, {at}.answer"), feeds=feeds)
+            agree(f"{at}.answer.id", each.answer.id, stroke_id(form.id, n + 1))
+            answer = replace(_hole_plan_from(each.answer, f"{where}, {at}.answer"), feeds=feeds[n])
             same_axis(f"{at}.answer", answer.hole, hole)
             strokes.append(noun_from(Stroke, each, answer=answer))
         else:
             agree(f"{at}.reversals_in_air", getattr(each, "reversals_in_air"), 0)  # noqa: B009
         unlike += stroke_differs(at, each, own, form.depth_mm - own.depth_mm)
-        if n == 0:
-            first = {"feeds": feeds}
-    return {**first, "strokes": tuple(strokes), "unlike": tuple(unlike)}
+    return {"feeds": feeds[0], "strokes": tuple(strokes), "unlike": tuple(unlike)}
 
 
 def _motion_from(form: PlanHole) -> Motion | None:

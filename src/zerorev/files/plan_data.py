@@ -64,7 +64,7 @@ def with_further_strokes(entry: dict[str, Any], plan: Plan, number: int) -> dict
     further = [
         data_of(replace(stroke, tool=tool)) | _stroke_data(hole_depth, stroke.answer) | {"answer": None}
         for tool, each in enumerate(plan.further, 1)
-        for stroke in strokes_of(each.holes[number])
+        for stroke in _strokes_of(each.holes[number])
     ]
     own["strokes"] += plain(further)
     return entry
@@ -163,16 +163,15 @@ def _corner_data(corner: Corner | None) -> dict[str, Any] | None:
 
 def _strokes_data(answer: HolePlan) -> list[dict[str, Any]] | None:
     """The strokes; of a hole with one motion that alone, which is known only where its feeds are."""
-    if answer.strokes:
-        return [
-            data_of(stroke) | _stroke_data(answer.hole.depth, stroke.answer) | {"answer": _hole_data(stroke.answer)}
-            for stroke in answer.strokes
-        ]
-    own = strokes_of(answer)
-    return [data_of(each) | _stroke_data(answer.hole.depth, answer) | {"answer": None} for each in own] or None
+    return [
+        data_of(each)
+        | _stroke_data(answer.hole.depth, each.answer)
+        | {"answer": _hole_data(each.answer) if answer.strokes else None}
+        for each in _strokes_of(answer)
+    ] or None
 
 
-def strokes_of(answer: HolePlan) -> tuple[Stroke, ...]:
+def _strokes_of(answer: HolePlan) -> tuple[Stroke, ...]:
     """The strokes of one tool in a hole: its only motion, too; none where there is no motion, or no feed is known."""
     if answer.strokes:
         return answer.strokes

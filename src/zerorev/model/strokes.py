@@ -29,7 +29,10 @@ from zerorev.model.plan import (
 )
 from zerorev.model.profile import Profile
 
-__all__ = ["by_stroke", "ids_of_strokes", "of_strokes", "shifted", "stroke_by_stroke", "stroke_hole", "together"]
+__all__ = [
+    "by_stroke", "each_stroke", "ids_of_strokes", "of_strokes", "shifted", "stroke_by_stroke", "stroke_hole",
+    "stroke_id", "together",
+]  # fmt: skip
 
 
 def stroke_hole(hole: Hole, number: int, depth: float, motion: Motion | None = None, dwell: float = 0.0) -> Hole:
@@ -44,13 +47,23 @@ def stroke_hole(hole: Hole, number: int, depth: float, motion: Motion | None = N
     """
     return replace(
         hole,
-        id=f"{hole.id}, stroke {number}",
+        id=stroke_id(hole.id, number),
         target=hole.target + (depth - hole.depth) * hole.direction,
         depth=depth,
         profile=None if motion is None else motion.profile,
         branch=hole.branch if motion is None else motion.branch,
         cycle=Cycle(dwell=dwell if depth == hole.depth else 0.0),
     )
+
+
+def stroke_id(hole_id: str, number: int) -> str:
+    """How a stroke is called, by the id of its hole and its number, from 1."""
+    return f"{hole_id}, stroke {number}"
+
+
+def each_stroke(answer: HolePlan) -> tuple[HolePlan, ...]:
+    """The answers of a hole's strokes; of one that has no others the hole's own."""
+    return tuple(stroke.answer for stroke in answer.strokes) or (answer,)
 
 
 def shifted(motion: Motion, by: float) -> Motion:
@@ -126,8 +139,8 @@ def by_stroke(plan: Plan) -> Plan:
     """
     if not any(hole.strokes for hole in plan.holes):
         return plan
-    order = [hole.hole.id for answer in plan.in_order if answer.hole.id in plan.order for hole in _each(answer)]
-    holes = tuple(each for answer in plan.holes for each in _each(answer))
+    order = [hole.hole.id for answer in plan.in_order if answer.hole.id in plan.order for hole in each_stroke(answer)]
+    holes = tuple(each for answer in plan.holes for each in each_stroke(answer))
     return replace(plan, holes=holes, order=tuple(order), transitions=())
 
 
@@ -138,7 +151,7 @@ def ids_of_strokes(plan: Plan, ids: Iterable[str]) -> list[str]:
         plan: of the holes.
         ids: of holes, or of strokes.
     """
-    strokes = {answer.hole.id: [each.hole.id for each in _answers(answer)] for answer in plan.holes if answer.strokes}
+    strokes = {answer.hole.id: [each.hole.id for each in each_stroke(answer)] for answer in plan.holes}
     return [each for hole_id in ids for each in strokes.get(hole_id, [hole_id])]
 
 
@@ -158,23 +171,16 @@ def together(plan: Plan, strokes: Plan) -> Plan:
             holes.append(next(found))
             continue
         own = tuple(replace(stroke, answer=next(found)) for stroke in answer.strokes)
-        said = [each for each in answer.findings if each not in _findings(answer.hole, _answers(answer))]
+        before = list(_findings(answer.hole, each_stroke(answer)))
+        said = [each for each in answer.findings if each not in before]
         whole = replace(answer, strokes=own, findings=(*said, *_findings(answer.hole, [each.answer for each in own])))
         holes.append(_with_proofs(whole))
     return replace(plan, holes=tuple(holes), findings=strokes.findings)
 
 
-def _each(answer: HolePlan) -> tuple[HolePlan, ...]:
-    return tuple(_answers(answer)) or (answer,)
-
-
-def _answers(answer: HolePlan) -> list[HolePlan]:
-    return [stroke.answer for stroke in answer.strokes]
-
-
 def _with_proofs(answer: HolePlan) -> HolePlan:
     """The answer with what the checks and proofs of its strokes come to."""
-    answers = _answers(answer)
+    answers = each_stroke(answer)
     return replace(
         answer,
         verified=_verified([each.verified for each in answers]),
@@ -262,11 +268,13 @@ def _within(found: Sequence[Within | None]) -> Within | None:
 
 def _findings(hole: Hole, answers: Sequence[HolePlan]) -> Iterator[Finding]:
     """What a user should know of the strokes, each said once, with the strokes that it is true of."""
-    said: dict[tuple[str, str, str], list[int]] = {}
+    said: dict[Finding, list[int]] = {}
     for number, answer in enumerate(answers, 1):
         for each in answer.findings:
-            said.setdefault((each.level, each.kind, each.message), []).append(number)
-    for (level, kind, message), numbers in said.items():
-        if len(numbers) < len(answers):
-            message = f"stroke{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}: {message}"
-        yield Finding(level, kind, message, hole.id)  # type: ignore[arg-type]  # as they were
+            said.setdefault(replace(each, hole=hole.id), []).append(number)
+    for finding, numbers in said.items():
+        if len(numbers) == len(answers):
+            yield finding
+        else:
+            which = f"stroke{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
+            yield replace(finding, message=f"{which}: {finding.message}")

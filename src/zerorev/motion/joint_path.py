@@ -22,6 +22,7 @@ __all__ = [
     "SAMPLES",
     "JointPath",
     "choose_turns",
+    "direction_changes",
     "joint_path",
     "joints_along",
     "outward_rates",
@@ -90,6 +91,18 @@ def joints_along(drilling: Drilling, branch: int, standoff: Array, psi: Array) -
     if reached.any():
         joints[reached] = np.unwrap(joints[reached], axis=0)
     return joints
+
+
+def direction_changes(steps: Array, at_rest: float) -> npt.NDArray[np.int64]:
+    """How often each joint turns round over a sequence of steps, shape (6,); one that rests for a while has not turned.
+
+    Args:
+        steps: of the joints, one after the other [rad], shape (n, 6).
+        at_rest: a joint that moves by no more than this on a step rests on it [rad].
+    """
+    signs = np.where(np.abs(steps) > at_rest, np.sign(steps), 0.0)
+    moving = [own[own != 0] for own in signs.T]
+    return np.array([np.count_nonzero(own[1:] != own[:-1]) for own in moving])
 
 
 def choose_turns(

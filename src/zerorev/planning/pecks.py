@@ -13,15 +13,16 @@ from zerorev.model.cycle import Cycle
 from zerorev.model.finding import Finding
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
-from zerorev.model.plan import HolePlan, Motion, Stroke
+from zerorev.model.plan import HolePlan, Stroke
 from zerorev.model.robot import Robot
 from zerorev.model.strokes import of_strokes, stroke_hole
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
+from zerorev.motion.joint_path import direction_changes
 from zerorev.planning.answered import answered
 from zerorev.planning.why_none import why_infeasible
 from zerorev.program.between import time_of_moves
-from zerorev.program.ways import Way
+from zerorev.program.ways import Way, stop_of_answer
 from zerorev.search.pecks import Pecks, pecking
 
 __all__ = ["pecked", "strokes_together"]
@@ -62,7 +63,7 @@ def strokes_together(
         answers: of its strokes, each with a motion.
         findings: of the hole, besides those of the strokes.
     """
-    ways = [(each, _way(robot, tool, settings, each)) for each in answers]
+    ways = [(each, stop_of_answer(robot, tool, settings, each).way) for each in answers]
     in_air, time = [0], sum(each.cycle_time or 0.0 for each in answers)
     for (one, leaving), (other, arriving) in pairwise(ways):
         in_air.append(_reversals_between(one, leaving, other, arriving))
@@ -83,12 +84,6 @@ def _peck_findings(hole: Hole, found: Pecks) -> tuple[Finding, ...]:
     return (Finding("info", "peck", message, hole.id),)
 
 
-def _way(robot: Robot, tool: Tool, settings: Settings, answer: HolePlan) -> Way:
-    """The way to a stroke and away from it."""
-    assert answer.motion is not None
-    return Way.of(Drilling(robot, tool, answer.hole, settings.limit_margin), answer.motion, settings)
-
-
 def _reversals_between(one: HolePlan, leaving: Way, other: HolePlan, arriving: Way) -> int:
     """Direction changes of the joints from the way out of one stroke to the way in of the next, outside the material.
 
@@ -101,21 +96,13 @@ def _reversals_between(one: HolePlan, leaving: Way, other: HolePlan, arriving: W
     assert one.motion is not None
     assert other.motion is not None
     path = np.concatenate([
-        _leg(one.motion, slice(-2, None)),
+        one.motion.joints[-2:],
         *_constant(leaving, inwards=False),
         *_constant(arriving, inwards=True),
         arriving.lead_in.joints[None],
-        _leg(other.motion, slice(0, 2)),
+        other.motion.joints[:2],
     ])  # fmt: skip
-    count = 0
-    for own in np.diff(path, axis=0).T:
-        signs = np.sign(own[np.abs(own) > AT_REST])
-        count += int((signs[1:] != signs[:-1]).sum())
-    return count
-
-
-def _leg(motion: Motion, rows: slice) -> Array:
-    return np.asarray(motion.joints[rows])
+    return int(direction_changes(np.diff(path, axis=0), AT_REST).sum())
 
 
 def _constant(way: Way, *, inwards: bool) -> Iterator[Array]:

@@ -18,6 +18,7 @@ from zerorev.collision.arms import setting_of
 from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding
 from zerorev.model.plan import HolePlan, Motion, Plan, Transition
+from zerorev.model.strokes import each_stroke
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward
 from zerorev.program.lead_in import LeadIn, find_lead_in
@@ -85,7 +86,7 @@ class ToolTurn:
 
     def add(self, answer: HolePlan) -> None:
         """Take the next answer."""
-        strokes = [each for each in [stroke.answer for stroke in answer.strokes] or [answer] if each.motion is not None]
+        strokes = [each for each in each_stroke(answer) if each.motion is not None]
         if strokes:
             spins, last = zip(*(self._stroke(each) for each in strokes), strict=True)
             self._runs[answer.hole.id] = _Run(np.concatenate(spins), np.concatenate(last))

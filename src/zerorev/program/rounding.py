@@ -19,6 +19,7 @@ from zerorev.model.plan import HolePlan, Plan, named_holes
 from zerorev.model.robot import Robot
 from zerorev.model.tool import Tool
 from zerorev.model.written import WrittenHole, WrittenProgram
+from zerorev.motion.joint_path import direction_changes
 from zerorev.motion.kinematics import inverse
 from zerorev.verify.as_planned import Places, places
 from zerorev.verify.printed import angle_slack, joints_of, length_slack
@@ -166,21 +167,16 @@ def _turned(first: Array, last: Array, share: Array) -> Array:
     return np.asarray((np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K) @ first)
 
 
-def directions(paths: Sequence[tuple[Array, bool]]) -> tuple[Array, npt.NDArray[np.bool_]]:
+def directions(paths: Sequence[tuple[Array, bool]]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
     """Reversals of each joint along paths one after the other, and which joints stand on a joint move; shape (6,).
 
     Args:
         paths: joints along each move [rad], shape (n, 6), and whether it is straight.
     """
     steps = np.vstack([np.diff(path, axis=0) for path, _ in paths])
-    signs = np.where(np.abs(steps) > STILL, np.sign(steps), 0.0)
-    reversals = np.zeros(6, dtype=int)
-    for joint in range(6):
-        moving = signs[signs[:, joint] != 0, joint]
-        reversals[joint] = int((moving[1:] != moving[:-1]).sum())
     still = np.array([(np.diff(path, axis=0) == 0).any(axis=0) for path, linear in paths if not linear])
-    standing = still.any(axis=0) & (signs != 0).any(axis=0) if len(still) else np.zeros(6, dtype=bool)
-    return reversals, standing
+    standing = still.any(axis=0) & (np.abs(steps) > STILL).any(axis=0) if len(still) else np.zeros(6, dtype=bool)
+    return direction_changes(steps, STILL), np.asarray(standing)
 
 
 def listed_joints(

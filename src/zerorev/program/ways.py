@@ -20,6 +20,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Motion
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import each_stroke
 from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.program.lead_in import LeadIn, find_lead_in
@@ -165,7 +166,7 @@ def stop_of_answer(robot: Robot, tool: Tool, settings: Settings, answer: HolePla
         settings: how the way is to be.
         answer: of the hole.
     """
-    ends = [stroke.answer for stroke in answer.strokes] or [answer]
+    ends = each_stroke(answer)
     assert ends[0].motion is not None
     assert ends[-1].motion is not None
     first = stop_of(robot, tool, settings, ends[0].hole, ends[0].motion)

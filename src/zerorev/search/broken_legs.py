@@ -17,11 +17,11 @@ from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.search.straight import LEAST_RATE, LIMIT_SLACK
 
-__all__ = ["CLEAN", "GUARDS", "BrokenLegs", "Goal", "Numbers"]
+__all__ = ["CLEAN", "GUARDS", "ROOM", "BrokenLegs", "Goal", "Numbers"]
 
 Goal = Literal["depth", "travel"]
 GOALS: dict[Goal, int] = {"depth": broken.DEEPEST, "travel": broken.LEAST_TRAVEL}
-# beyond the motion threshold on a way back [rad/m]: 0.001 deg/mm, so that the digits of a program turn no joint round
+# kept beyond the motion threshold [rad/m]: 0.001 deg/mm, so that the digits of a program turn no joint round
 ROOM = float(np.deg2rad(1.0))
 GUARDS = (0.0, 1e-4, 1e-3, 1e-2)  # beyond the motion threshold, for what lies between the points examined [rad/m]
 CLEAN = 1e-6  # [rad/m] below what is asked: lost in rounding, and made up for by what is kept back, or by a guard

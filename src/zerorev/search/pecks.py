@@ -25,6 +25,7 @@ from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.evaluation import evaluated
 from zerorev.motion.joint_path import choose_turns
+from zerorev.search.broken_legs import ROOM
 from zerorev.search.optimum import best_motion, on_each_branch
 from zerorev.search.rank import Candidate, Order
 
@@ -34,8 +35,6 @@ STARTS = 36  # spins to begin with
 SIDES = np.deg2rad(np.geomspace(3.0, 3000.0, 16))  # [rad/m] beyond the critical rates, from 0.003 to 3 deg/mm
 SAMPLES = 7  # of a leg
 TRIED = 3  # slopes of a plunge, the least that suffice
-# beyond the motion threshold [rad/m]: 0.001 deg/mm, so that the digits of a program turn no joint round
-ROOM = float(np.deg2rad(1.0))
 WIDE = 8 * np.pi  # [rad] limits that no run comes near
 NO_STROKE = "no stroke is without a reversal"
 

@@ -100,7 +100,7 @@ def _clearance(plan: Plan, holes: list[HolePlan], joints: Array) -> float:
         depth = np.full(points.shape[1:], np.inf)
         for each in holes:
             hole = each.hole
-            surface = hole.target - hole.depth * hole.direction
+            surface = hole.entry
             depth = np.minimum(depth, np.einsum("i,i...->...", hole.direction, points) - hole.direction @ surface)
         outside = -depth if thickness is None else np.maximum(-depth, depth - thickness)
         least = min(least, float(outside.min()) - radius)

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.model._arrays import Array
 from zerorev.motion.kinematics import forward
 from zerorev.program.inform.text import from_pulses, pulses
 from zerorev.program.neutral import HoleProgram, Program
@@ -36,7 +35,7 @@ class Rounded(NamedTuple):
     off_axis: float
     along: float
     tilt: float
-    reversals: Array
+    reversals: npt.NDArray[np.int64]
     standing: npt.NDArray[np.bool_]
     wrist: float
 

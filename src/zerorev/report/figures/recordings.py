@@ -89,7 +89,7 @@ def postures(compared: Compared) -> Figure | None:
         for _, n, dashes, width in places:
             arm = skeleton(drilling.robot, drilling.tool, rows[n]) * 1e3
             axes.plot(arm[:, x], arm[:, y], color=OPTIMISED, linewidth=width, linestyle=dashes)
-        ends = (drilling.hole.target - drilling.hole.depth * drilling.hole.direction, drilling.hole.target)
+        ends = (drilling.hole.entry, drilling.hole.target)
         axes.plot([end[x] * 1e3 for end in ends], [end[y] * 1e3 for end in ends], color=style.INK, linewidth=3.0)
         axes.set_title(name, loc="left", size=9.5, color=style.MUTED)
         style.label(axes, x="X [mm]", y="YZ"[y - 1] + " [mm]")
