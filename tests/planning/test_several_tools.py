@@ -171,6 +171,10 @@ def test_the_page_does_not_lose_the_other_tools(files):
         ({**JOB, "tools": [{"tool": "no_such_tool"}]}, "tools[0].tool"),
         ({**JOB, "tools": [{"tool": DRILL}, {"tool": REAMER, "cycle": {"kind": "peck"}}]}, "tools[1]"),
         ({**JOB, "tools": [{"tool": DRILL, "feed_mm_s": {"plunge": -1}}]}, "plunge"),
+        (  # known before the first tool is planned
+            {**JOB, "tools": [{"tool": DRILL}, {"tool": REAMER, "cycle": {"kind": "peck", "depth_mm": 0.01}}]},
+            "tools[1], hole a, cycle, depth_mm: 2000 pecks in 20 mm",
+        ),
     ],
 )
 def test_bad_input_is_one_error_that_says_where(job, said):

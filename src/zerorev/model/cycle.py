@@ -115,7 +115,7 @@ class Cycle:
 
         if self.kind != "chip_break" or self.depth is None:
             return np.empty(0)
-        self._check_count(depth)
+        self.check_count(depth)
         found = depth - self.depth * np.arange(1, MOST_PECKS + 1)
         return np.asarray(found[found > self.nearest])
 
@@ -130,7 +130,7 @@ class Cycle:
         """
         if self.kind != "peck" or self.depth is None:
             return (depth,)
-        self._check_count(depth)
+        self.check_count(depth)
         whole = int(depth / self.depth * (1 - 1e-9))
         return (*(self.depth * n for n in range(1, whole + 1)), depth)
 
@@ -139,11 +139,19 @@ class Cycle:
         """How the deepest of its strokes is drilled; itself where it has no others."""
         return Cycle(dwell=self.dwell) if self.kind == "peck" else self
 
-    def _check_count(self, depth: float) -> None:
-        assert self.depth is not None
-        if depth / self.depth > MOST_PECKS:
+    def check_count(self, depth: float, where: str = "cycle, depth_mm") -> None:
+        """Refuse more breaks or strokes than a hole may have.
+
+        Args:
+            depth: of the hole [m].
+            where: as a message names it.
+
+        Raises:
+            InputError: there are too many.
+        """
+        if self.kind != "single" and self.depth is not None and depth / self.depth > MOST_PECKS:
             raise InputError(
-                f"{depth / self.depth:.0f} pecks in {depth * 1e3:g} mm", where="cycle, depth_mm",
+                f"{depth / self.depth:.0f} pecks in {depth * 1e3:g} mm", where=where,
                 accepted=f"{MOST_PECKS} or fewer, so {depth * 1e3 / MOST_PECKS:g} mm or more",
             )  # fmt: skip
 

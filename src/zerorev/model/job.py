@@ -80,5 +80,7 @@ class Job:
             if hole.id in seen:
                 raise InputError(f"the id '{hole.id}' is used twice", where="holes", accepted="ids that differ")
             seen.add(hole.id)
-            self.settings.of(hole)  # raises what does not fit together
+            cycle = self.settings.of(hole).cycle  # raises what does not fit together
+            if hole.profile is None:
+                cycle.check_count(hole.depth, f"hole {hole.id}, cycle, depth_mm")
         check_robot(self.robot, self.settings)
