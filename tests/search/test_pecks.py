@@ -138,7 +138,9 @@ def test_a_hole_of_one_stroke_says_so_in_its_file():
     assert stroke["answer"] is None
     assert stroke["standoff_mm"] == data["holes"][0]["standoff_mm"]
     data["holes"][0]["strokes"][0]["psi_deg"][1] += 1.0
-    (wrong,) = check_plan(plan_from_text(json.dumps(data), "plan")).wrong
+    again = plan_from_text(json.dumps(data), "plan")
+    assert plan_to_json(again) == data  # given back as it was read
+    (wrong,) = check_plan(again).wrong
     assert wrong.message.startswith("strokes[0].psi_deg[1]: stated ")
 
 

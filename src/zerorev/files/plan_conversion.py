@@ -260,7 +260,10 @@ def _strokes_from(form: PlanHole, hole: Hole, where: str) -> dict[str, Any]:
         else:
             agree(f"{at}.reversals_in_air", getattr(each, "reversals_in_air"), 0)  # noqa: B009
         unlike += stroke_differs(at, each, own, form.depth_mm - own.depth_mm)
-    return {"feeds": feeds[0], "strokes": tuple(strokes), "unlike": tuple(unlike)}
+    as_read = tuple(each.model_dump(exclude={"answer"}) for each in of_the_first) if unlike else ()
+    return {
+        "feeds": feeds[0], "strokes": tuple(strokes), "unlike": tuple(unlike), "strokes_as_read": as_read
+    }  # fmt: skip
 
 
 def _motion_from(form: PlanHole) -> Motion | None:

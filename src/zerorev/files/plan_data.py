@@ -163,12 +163,11 @@ def _corner_data(corner: Corner | None) -> dict[str, Any] | None:
 
 def _strokes_data(answer: HolePlan) -> list[dict[str, Any]] | None:
     """The strokes; of a hole with one motion that alone, which is known only where its feeds are."""
-    return [
-        data_of(each)
-        | _stroke_data(answer.hole.depth, each.answer)
-        | {"answer": _hole_data(each.answer) if answer.strokes else None}
-        for each in _strokes_of(answer)
-    ] or None
+    own: list[dict[str, Any] | None] = [_hole_data(each.answer) for each in answer.strokes] or [None]
+    said = answer.strokes_as_read or [
+        data_of(each) | _stroke_data(answer.hole.depth, each.answer) for each in _strokes_of(answer)
+    ]
+    return [{**each, "answer": one} for each, one in zip(said, own, strict=True)] if said else None
 
 
 def _strokes_of(answer: HolePlan) -> tuple[Stroke, ...]:

@@ -168,7 +168,10 @@ def _joint(entry: Any, where: str) -> Joint:
         if not length > 1e-9:
             raise InputError("an axis of no length", where=where, accepted="a vector other than 0")
         axis = axis / length
-    return Joint(str(parent.get("link")), str(child.get("link")), _origin(entry, where), axis)
+    links = [end.get("link") for end in (parent, child)]
+    if not all(links):
+        raise InputError("an end that names no link", where=where, accepted='<parent link="…"/> and <child link="…"/>')
+    return Joint(str(links[0]), str(links[1]), _origin(entry, where), axis)
 
 
 def _depth(joint: Joint, by_child: dict[str, Joint], where: str) -> int:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -349,7 +349,10 @@ class HolePlan(Shown):
         lost_motion: what the gears are predicted to add at the tip; None where the robot's masses are not known.
         corner: how the motion turns round; None without one, and in files of before it was said.
         feeds: of the plunge and of the retract [m/s]; None without a motion, and in files of before they were said.
-        unlike: what the file, from which this was read, says of its strokes otherwise than of their motions.
+        unlike: what the file, from which this was read, says of its strokes otherwise than of their motions, a sentence
+            each.
+        strokes_as_read: its list of strokes but for their answers, as plain data, where it says anything otherwise: it
+            is given back as it was, for `check` to name it; else empty.
         strokes: all of them, of a hole that is drilled in several. Motion, corner and critical rates are those of the
             first one then, stand-offs counted from the hole's own target; the score is that of all together.
         clearance: how near it comes to what stands around; None where nothing is known to.
@@ -401,6 +404,7 @@ class HolePlan(Shown):
     feeds: tuple[float, float] | None = None
     strokes: tuple[Stroke, ...] = ()
     unlike: tuple[str, ...] = field(default=(), compare=False)
+    strokes_as_read: tuple[Mapping[str, Any], ...] = field(default=(), compare=False)
     clearance: Clearance | None = None
 
 

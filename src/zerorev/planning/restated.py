@@ -224,7 +224,7 @@ def check_hole(
     if stated.motion is None:
         differences = _fields_differ(robot, stated, again, dict)
         unsaid_or_foreign = findings_differ(_but(stated.findings, OF_A_PROOF), _but(again.findings, *_unknown(stated)))
-        return CheckedHole(None, (*stated.unlike, *differences, *unsaid_or_foreign))
+        return CheckedHole(None, tuple(dict.fromkeys((*stated.unlike, *differences, *unsaid_or_foreign))))
     own = figures(robot, tool, settings, stated)
     answer = stated if own is None else own.answer
     # what is stated of the figures is compared below, so the check of the motion is given those that were found
@@ -264,7 +264,7 @@ def check_hole(
         outcome = replace(stated, verified=_comparable(stated.verified, verified, fails))
         differences += _fields_differ(robot, stated, outcome, digits)
     # of what is stated, too, where that is the same
-    differences += stated.unlike
+    differences = list(dict.fromkeys([*differences, *stated.unlike]))
     known = subject(robot, tool, settings, stated) if verified.subject and not differences else None
     least = again.score if again.score is not None else stated.score
     return CheckedHole(replace(verified, subject=known), tuple(differences), least.travel if least else 0.0)
@@ -284,7 +284,7 @@ def _check_strokes(robot: Robot, tool: Tool, settings: Settings, stated: HolePla
     wrong += findings_differ(_but(stated.findings, OF_A_PROOF), _but(found.findings, OF_A_PROOF))
     checked = with_checks(stated, [each.verified for each in own])
     travel = 0.0 if stated.score is None else stated.score.travel
-    return CheckedHole(checked.verified, tuple(wrong), travel, checked.strokes)
+    return CheckedHole(checked.verified, tuple(dict.fromkeys(wrong)), travel, checked.strokes)
 
 
 def _unknown(stated: HolePlan) -> tuple[FindingKind, ...]:

@@ -151,6 +151,8 @@ def test_other_formats_and_broken_meshes_are_refused(robot, tmp_path):
         ('<robot><link name="a"/><joint name="j" type="prismatic"/></robot>', "type 'prismatic'"),
         ('<robot><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
          '<origin xyz="1 x 2"/></joint></robot>', "is not 3 numbers"),
+        ('<robot><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent/>'
+         '<child link="b"/></joint></robot>', "joint j.*names no link"),
     ],
 )  # fmt: skip
 def test_what_is_not_a_description(robot, tmp_path, content, message):
