@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
+from zerorev.files.io import job_from_dict
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import Baseline, HolePlan, Plan
 from zerorev.model.profile import Profile
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import wrist_offset
+from zerorev.planning.job import plan_job
 
 
 def answer(robot, tool, hole, profile, branch):
@@ -45,3 +47,23 @@ def published(robot, tool):
         Hole("far", np.array([9.0, 0, 0]), np.array([1.0, 0, 0]), 0.05), "infeasible", holes[0].wrist_offset
     )
     return Plan(robot, tool, Settings(), (*holes, lost))
+
+
+@pytest.fixture(scope="session")
+def two_tools():
+    """A job of two tools, planned: the first drills hole `a` in two strokes and `b` in one, the second both in one."""
+    drill, reamer = ({"tcp_mm": [x, 0, z], "rpy_deg": [0, -90, 0]} for x, z in ((100, 65), (120, 80)))
+    job = {
+        "name": "two",
+        "robot": "kuka_kr6_r700_2",
+        "proof_boxes": 0,
+        "tools": [
+            {"tool": drill, "tool_number": 2, "cycle": {"kind": "peck", "depth_mm": 10}},
+            {"tool": reamer, "tool_number": 3, "depth_mm": 22},
+        ],
+        "holes": [
+            {"id": "a", "target_mm": [500, 300, 800], "direction": [1, 0, 0], "depth_mm": 20},
+            {"id": "b", "target_mm": [500, 340, 800], "direction": [1, 0, 0], "depth_mm": 8},
+        ],
+    }
+    return plan_job(job_from_dict(job))

@@ -57,10 +57,9 @@ class Pictures:
         """
         written = []
         if self.figures is not None:
-            from zerorev.report.figures import write_figures
+            from zerorev.report.figures import picture_count, write_figures
 
-            count = len(plan.holes) if self.of is None else len(self.of)
-            with terminal.progress("drawing", count) as progress:
+            with terminal.progress("drawing", picture_count(plan, self.of), "picture") as progress:
                 write_figures(plan, self.figures, progress, ids=self.of, machines=Machines(processes))
             written.append(f"figures written to {self.figures}")
         if self.report is not None:

@@ -38,7 +38,7 @@ def plan(
     Args:
         job: The job file (YAML): robot, tool, holes.
         output: Where to write the plan (JSON). Without it the answer is only shown.
-        figures: Folder for three pictures a hole; it is made if its parent exists.
+        figures: Folder for three pictures of each hole and stroke, tool by tool; it is made if its parent exists.
         figures_of: Ids of the only holes to draw, with commas between them.
         report: Page with everything about the plan to write (HTML), to be printed or filed; it needs no network.
         workers: Processes to plan and draw on; by default all cores where the job is large enough. What comes out is

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.plan import HolePlan, Motion, Plan
 from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
 from zerorev.report.scene.load_lines import load_lines, senses
@@ -26,30 +27,32 @@ OUT = (0.7, 0.4, 0.95, 0.15)  # of the way out: where a curve is named, in the f
 ROOM, ALIKE = (0.1, 0.028), 0.4  # of the picture: what a name takes; how far apart the same one stands along a curve
 
 
-def draw_loads(axes: Axes, plan: Plan, hole: HolePlan, standoff: Array, psi: Array) -> list[Any]:
+def draw_loads(
+    axes: Axes, plan: Plan, hole: HolePlan, motions: Sequence[Motion], standoff: Array, psi: Array
+) -> list[Any]:
     """Draw the curves on which a load changes its sign, each on the legs on which its joint turns that way.
 
     Args:
         axes: the twist plane: signed path distance from the corner [mm], spin [deg].
         plan: whose robot and tool move.
-        hole: with a motion.
+        hole: that is drilled.
+        motions: of it, one per stroke, all on one branch, stand-offs counted from its target.
         standoff: that is shown [m], from the corner on.
         psi: spins that are shown [rad].
 
     Returns:
         what the legend says of them; nothing where there are none.
     """
-    motion = style.motion_of(hole)
-    drilling = Drilling.of(plan, hole.hole)
-    lines = load_lines(drilling, motion.branch, standoff, psi, plan.settings.thrust)
+    drilling, branch = Drilling.of(plan, hole.hole), motions[0].branch
+    lines = load_lines(drilling, branch, standoff, psi, plan.settings.thrust)
     if not lines:
         return []
-    turning = senses(drilling, motion.profile, motion.branch)
+    turning = [senses(drilling, motion.profile, branch) for motion in motions]
     names: list[tuple[float, float, str]] = []
     for line in lines:
         away, spin = (line.points[:, 0] - standoff[0]) * 1e3, np.rad2deg(line.points[:, 1])
         for leg in line.legs:
-            if line.sense not in turning[leg][line.joint - 1]:
+            if not any(line.sense in of_one[leg][line.joint - 1] for of_one in turning):
                 continue
             x = -away if leg == "plunge" else away
             axes.plot(x, spin, color=style.JOINT_COLOURS[line.joint - 1], zorder=4, label="load", **THIN)

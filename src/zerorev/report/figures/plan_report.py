@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from zerorev.model.plan import HolePlan, Plan
-from zerorev.model.strokes import by_stroke
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.part_view import part_view
 from zerorev.report.figures.plane import twist_plane
@@ -25,7 +24,7 @@ from zerorev.report.words.plan_facts import (
     move_row,
     robot_facts,
     summary_facts,
-    table_row,
+    table_rows,
     tool_facts,
     verdict,
     why_bad,
@@ -51,13 +50,9 @@ def plan_report(plan: Plan, source: str) -> str:
     """The page as HTML, whole in itself: no script, nothing from elsewhere. The same plan makes the same page.
 
     Args:
-        plan: what was found.
+        plan: what was found; of several tools each has a section of its own.
         source: the file that it comes from, as the page names it.
     """
-    found = all_findings(plan)
-    levels = Counter(finding.level for finding in found)
-    worst = worst_holes(plan)
-    drawn = [hole for hole in worst_holes(by_stroke(plan)) if hole.motion is not None][:DRAWN]
     return (
         environment("zerorev.report.figures", _shown)
         .get_template("plan_report.html.j2")
@@ -66,21 +61,33 @@ def plan_report(plan: Plan, source: str) -> str:
             title=plan.name,
             kind="Drilling plan" if plan.strokes == "asked" else "Deepest strokes",
             source=source,
-            verdict=verdict(plan, levels["error"]),
-            summary=summary_facts(plan, levels),
-            asked=(("Job", job_facts(plan)), ("Robot", robot_facts(plan)), ("Tool", tool_facts(plan))),
-            settings=settings_rows(plan.settings),
-            worst=[(hole.hole.id, why_bad(plan, hole)) for hole in worst[:LISTED]],
-            findings=grouped(found),
-            overview=Picture(png(part_view(plan)), "Holes on the part, and the way from one to the next"),
-            pictures=[picture for hole in drawn for picture in _pictures(plan, hole)],
-            rows=[table_row(plan, hole, n) for n, hole in enumerate(plan.in_order, 1)],
-            weighed=any(hole.lost_motion is not None for hole in plan.holes),
-            notes=hole_notes(plan),
-            moves=[move_row(move) for move in plan.transitions],
-            sequence=sequence_line(plan.transitions, plan.cycle_time) if plan.transitions else "",
+            tools=[_of_tool(each) for each in plan.of_all_tools],
         )
     )
+
+
+def _of_tool(plan: Plan) -> dict[str, Any]:
+    """What the page says of a tool, the robot and the holes that it drills."""
+    found = all_findings(plan)
+    levels = Counter(finding.level for finding in found)
+    worst = worst_holes(plan)
+    drawn = [hole for hole in worst if hole.motion is not None][:DRAWN]
+    return {
+        "name": plan.tool.name,
+        "verdict": verdict(plan, levels["error"]),
+        "summary": summary_facts(plan, levels),
+        "asked": (("Job", job_facts(plan)), ("Robot", robot_facts(plan)), ("Tool", tool_facts(plan))),
+        "settings": settings_rows(plan.settings),
+        "worst": [(hole.hole.id, why_bad(plan, hole)) for hole in worst[:LISTED]],
+        "findings": grouped(found),
+        "overview": Picture(png(part_view(plan)), "Holes on the part, and the way from one to the next"),
+        "pictures": [picture for hole in drawn for picture in _pictures(plan, hole)],
+        "rows": [row for n, hole in enumerate(plan.in_order, 1) for row in table_rows(plan, hole, n)],
+        "weighed": any(hole.lost_motion is not None for hole in plan.holes),
+        "notes": hole_notes(plan),
+        "moves": [move_row(move) for move in plan.transitions],
+        "sequence": sequence_line(plan.transitions, plan.cycle_time) if plan.transitions else "",
+    }
 
 
 def _shown(value: Any) -> Any:
@@ -89,5 +96,7 @@ def _shown(value: Any) -> Any:
 
 
 def _pictures(plan: Plan, hole: HolePlan) -> Iterable[Picture]:
-    yield Picture(png(joint_angles(plan, hole)), f"Joint angles of hole {hole.hole.id} along the motion")
-    yield Picture(png(twist_plane(plan, hole)), f"Twist plane of hole {hole.hole.id}, with the motion")
+    with_what = f"with the motions of its {len(hole.strokes)} strokes" if hole.strokes else "with the motion"
+    along = "its strokes" if hole.strokes else "the motion"
+    yield Picture(png(joint_angles(plan, hole)), f"Joint angles of hole {hole.hole.id} along {along}")
+    yield Picture(png(twist_plane(plan, hole)), f"Twist plane of hole {hole.hole.id}, {with_what}")

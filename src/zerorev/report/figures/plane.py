@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +16,8 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator, MultipleLocator
 
 from zerorev.model._arrays import Array
-from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.model.plan import Event, HolePlan, Motion, Plan
+from zerorev.model.strokes import each_stroke, shifted
 from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
 from zerorev.report.figures.loads import draw_loads
@@ -24,6 +27,7 @@ __all__ = ["twist_plane"]
 
 STANDOFFS = 101
 VISIBLE = 5e-4  # of the picture: what is smaller is not in the legend
+NUMBERED = 6  # strokes in the legend
 SAME_PLACE = 0.08  # of the path: reversals this close to each other are named together
 SPIN_STEP = np.deg2rad(0.5)
 LEAST_RANGE, MARGIN = 2 * np.pi, np.deg2rad(30)  # of spins that are shown
@@ -34,6 +38,7 @@ TICKS = (0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0)
 SLATE = LinearSegmentedColormap.from_list("slate", ["#f4f6f9", "#d5dbe5", "#b7c1cf", "#9aa7ba", "#7e8ea5", "#647690"])
 UNREACHED: dict[str, Any] = {"facecolor": "#fbfbfb", "edgecolor": "#b5b5b5", "hatch": "////", "linewidth": 0.0}
 LIMITED: dict[str, Any] = {"facecolor": "#faf0d7", "edgecolor": "#c9a24a", "hatch": "..", "linewidth": 0.0}
+SAME: dict[str, Any] = {"color": "black", "linewidth": 1.0, "linestyle": (0, (1, 2)), "zorder": 5}
 LEG = {"color": "black", "linewidth": 2.8, "path_effects": [withStroke(linewidth=5.2, foreground="white")], "zorder": 6}
 
 
@@ -44,23 +49,27 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     reach or a joint leaves its limits; the lines on which spin does not move a joint; and, where the robot's masses are
     known, thin lines on which the load of a joint changes its sign, as the joints turn on either leg.
 
+    Of a hole of several strokes all of them, numbered where they turn round; those on another branch than the first one
+    are only named, since the field is of one branch.
+
     Args:
         plan: whose robot and tool move.
-        hole: of the plan, or its id; None: the first that has a motion.
+        hole: of the plan, or its id, or that of a stroke; None: the first that has a motion.
         ax: to draw into; None: a figure with a heading.
 
     Raises:
         InputError: there is no such hole, or it has no motion.
     """
     hole = style.hole_of(plan, hole)
-    motion = style.motion_of(hole)
-    profile = motion.profile
+    strokes = _strokes(hole)
+    drawn = [stroke for stroke in strokes if stroke.motion.branch == strokes[0].motion.branch]
     figure, axes = style.one_axes(ax, "Twist plane", style.hole_heading(plan, hole), 7.2)
-    corner = profile.standoff[profile.corner]
-    low, high = _spin_range(profile.psi)
+    standoffs = np.concatenate([stroke.motion.profile.standoff for stroke in strokes])
+    corner = standoffs.min()
+    low, high = _spin_range(np.concatenate([stroke.motion.profile.psi for stroke in drawn]))
     patch = field(
-        Drilling.of(plan, hole.hole), motion.branch,
-        np.linspace(corner, profile.standoff.max(), STANDOFFS),
+        Drilling.of(plan, hole.hole), drawn[0].motion.branch,
+        np.linspace(corner, standoffs.max(), STANDOFFS),
         np.linspace(low, high, int(np.ceil((high - low) / SPIN_STEP)) + 1),
     )  # fmt: skip
     # signed path distance from the corner [mm]: the plunge on the left, the retract on the right
@@ -69,9 +78,11 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     image = _spread(axes, x, y, patch)
     limited = _regions(axes, x, y, patch)
     crossed = _sign_changes(axes, plan, x, y, patch)
-    _legs(axes, plan, hole, motion)
+    axes.axvline(0.0, color="black", linewidth=0.9, linestyle=":", zorder=5)
+    for stroke in drawn:
+        _legs(axes, plan, stroke, float(corner), numbered=len(strokes) > 1)
     _axes(axes, x, y, float(corner) * 1e3)
-    loaded = draw_loads(axes, plan, hole, patch.standoff, patch.psi)
+    loaded = draw_loads(axes, plan, hole, [stroke.motion for stroke in drawn], patch.standoff, patch.psi)
     bar = figure.colorbar(image, ax=axes, pad=0.02 if not crossed else 0.035, aspect=38, extend="max")
     bar.set_label("twist spread [deg/mm]: the least bracket for zero reversals", size=9.5, color=style.INK)
     bar.set_ticks([tick for tick in TICKS if image.norm.vmin <= tick <= CAP], minor=False)
@@ -79,8 +90,27 @@ def twist_plane(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes | No
     bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     bar.ax.tick_params(labelsize=8.5)
     bar.outline.set_visible(False)
-    style.legend_below(figure, _handles(plan, hole, patch, crossed, limited) + loaded, 4, ax)
+    style.legend_below(figure, _handles(plan, strokes, patch, crossed, limited) + loaded, 4, ax)
     return figure
+
+
+class _Stroke(NamedTuple):
+    """A stroke of a hole, numbered from 1: its motion and reversals, stand-offs counted from the hole's own target."""
+
+    number: int
+    motion: Motion
+    events: tuple[Event, ...]
+
+
+def _strokes(hole: HolePlan) -> list[_Stroke]:
+    """All strokes of a hole; of one that has no others its own motion."""
+    found = []
+    for number, answer in enumerate(each_stroke(hole), 1):
+        up = hole.hole.depth - answer.hole.depth
+        events = answer.score.events if answer.score else ()
+        events = tuple(replace(event, standoff=event.standoff + up) for event in events)
+        found.append(_Stroke(number, shifted(style.motion_of(answer), up), events))
+    return found
 
 
 def _spin_range(psi: Array) -> tuple[float, float]:
@@ -141,40 +171,50 @@ def _sign_changes(axes: Axes, plan: Plan, x: Array, y: Array, patch: Field) -> l
     return crossed
 
 
-def _legs(axes: Axes, plan: Plan, hole: HolePlan, motion: Motion) -> None:
-    profile = motion.profile
+def _legs(axes: Axes, plan: Plan, stroke: _Stroke, deepest: float, *, numbered: bool) -> None:
+    """Draw the two legs of a stroke, over the distance from the deepest corner of all [m], and what is said of them."""
+    profile = stroke.motion.profile
     n = profile.corner
-    away = (profile.standoff - profile.standoff[n]) * 1e3
-    x, y = np.where(np.arange(away.size) < n, -away, away), np.rad2deg(profile.psi)
-    axes.axvline(0.0, color="black", linewidth=0.9, linestyle=":", zorder=5)
-    axes.plot(x[: n + 1], y[: n + 1], label="plunge leg", **LEG)  # type: ignore[arg-type]
-    axes.plot(x[n:], y[n:], label="retract leg", **LEG)  # type: ignore[arg-type]
-    for a, b in ((0, 1), (x.size - 2, x.size - 1)):
-        middle, towards = (x[a] + x[b]) / 2, (x[a] + 2 * x[b]) / 3
-        axes.annotate("", (towards, (y[a] + 2 * y[b]) / 3), xytext=(middle, (y[a] + y[b]) / 2), zorder=7,
+    away, y = (profile.standoff - deepest) * 1e3, np.rad2deg(profile.psi)
+    plunge, retract = -away[: n + 1], away[n:]
+    axes.plot(plunge, y[: n + 1], label="plunge leg", **LEG)  # type: ignore[arg-type]
+    axes.plot(retract, y[n:], label="retract leg", **LEG)  # type: ignore[arg-type]
+    if away[n] > 0:  # the same place on both sides
+        axes.plot([plunge[-1], retract[0]], y[[n, n]], label="same place", **SAME)
+    for x, spins in ((plunge[:2], y[:2]), (retract[-2:], y[-2:])):
+        middle, towards = x @ [0.5, 0.5], x @ [1 / 3, 2 / 3]
+        axes.annotate("", (towards, spins @ [1 / 3, 2 / 3]), xytext=(middle, spins @ [0.5, 0.5]), zorder=7,
                       arrowprops={"arrowstyle": "-|>,head_width=0.42,head_length=0.75", "color": "black",
                                   "shrinkA": 0, "shrinkB": 0, "linewidth": 2.0})  # fmt: skip
-    inner = np.delete(np.arange(x.size), [0, n, x.size - 1])
-    if inner.size:
-        axes.plot(x[inner], y[inner], "o", color="white", markeredgecolor="black", markersize=6, zorder=7)
-    for k, marker, size, name, side in (
-        (0, "o", 9, "start", "left"), (n, "D", 8, "target", "left"), (x.size - 1, "s", 8.5, "end", "right"),
+    for x, spins in ((plunge[1:-1], y[1:n]), (retract[1:-1], y[n + 1 : -1])):
+        if x.size:
+            axes.plot(x, spins, "o", color="white", markeredgecolor="black", markersize=6, zorder=7)
+    for x, k, marker, size, name in (
+        (plunge[0], 0, "o", 9, "start"), (plunge[-1], n, "D", 8, "target"), (retract[-1], y.size - 1, "s", 8.5, "end"),
     ):  # fmt: skip
-        axes.plot(x[k], y[k], marker, color="white", markeredgecolor="black", markeredgewidth=2.0, markersize=size,
+        axes.plot(x, y[k], marker, color="white", markeredgecolor="black", markeredgewidth=2.0, markersize=size,
                   zorder=8, clip_on=False, label=name)  # fmt: skip
+        if numbered:
+            continue
         axes.annotate(
-            f"{name} {style.signed(y[k], 2)}°", (x[k], y[k]), textcoords="offset points", size=9.5, zorder=9,
-            xytext=(9 if side == "left" else -9, _clear_of_legs(y, k)), ha=side, va="center", color="black",
-            path_effects=[withStroke(linewidth=3.5, foreground="white")],
+            f"{name} {style.signed(y[k], 2)}°", (x, y[k]), textcoords="offset points", size=9.5, zorder=9,
+            xytext=(9 if name != "end" else -9, _clear_of_legs(y, k)), ha="left" if name != "end" else "right",
+            va="center", color="black", path_effects=[withStroke(linewidth=3.5, foreground="white")],
         )  # fmt: skip
-    _reversals(axes, plan, hole, x, y)
+    if numbered:
+        axes.annotate(f"{stroke.number}", (plunge[-1], y[n]), textcoords="offset points", size=9.5, xytext=(0, 14),
+                      ha="center", va="center", weight="bold", zorder=9,
+                      path_effects=[withStroke(linewidth=3.5, foreground="white")])  # fmt: skip
+    places = [
+        float(plunge[-1]) if e.leg == "target" else (e.standoff - deepest) * (-1e3 if e.leg == "plunge" else 1e3)
+        for e in stroke.events
+    ]
+    x, spins = np.concatenate([plunge, retract]), np.concatenate([y[: n + 1], y[n:]])
+    _reversals(axes, plan, stroke.events, places, x, spins)
 
 
-def _reversals(axes: Axes, plan: Plan, hole: HolePlan, x: Array, y: Array) -> None:
+def _reversals(axes: Axes, plan: Plan, events: Sequence[Event], places: Sequence[float], x: Array, y: Array) -> None:
     """Mark the reversals on the legs, and name their joints; those that lie close together share one line of names."""
-    corner = style.motion_of(hole).profile.standoff.min()
-    events = hole.score.events if hole.score else ()
-    places = [(e.standoff - corner) * 1e3 * (-1 if e.leg == "plunge" else 1) * (e.leg != "target") for e in events]
     clusters: list[list[int]] = []
     for k in np.argsort(places, kind="stable"):
         if clusters and places[k] - places[clusters[-1][-1]] < SAME_PLACE * (x[-1] - x[0]):
@@ -223,15 +263,19 @@ def _axes(axes: Axes, x: Array, y: Array, corner: float) -> None:
                       color=style.INK)  # fmt: skip
 
 
-def _handles(plan: Plan, hole: HolePlan, patch: Field, crossed: list[int], limited: list[int]) -> list[Any]:
+def _handles(plan: Plan, strokes: Sequence[_Stroke], patch: Field, crossed: list[int], limited: list[int]) -> list[Any]:
     names = plan.robot.joint_names
     handles: list[Any] = [
         Line2D([], [], color=style.JOINT_COLOURS[i], linewidth=2.0, linestyle=style.DASHES[i],
                label=f"spin does not move {names[i]}")
         for i in crossed
     ]  # fmt: skip
-    handles.append(Line2D([], [], color="black", linewidth=2.8, label="the planned motion"))
-    if hole.score and hole.score.events:
+    words = "the planned motion" if len(strokes) == 1 else "the planned strokes"
+    handles.append(Line2D([], [], color="black", linewidth=2.8, label=words))
+    if others := [each for each in strokes if each.motion.branch != strokes[0].motion.branch]:
+        numbers = ", ".join(str(each.number) for each in others[:NUMBERED]) + (", …" if others[NUMBERED:] else "")
+        handles.append(Line2D([], [], linestyle="none", label=f"on another branch: {numbers}"))
+    if any(stroke.events for stroke in strokes if stroke not in others):
         handles.append(Line2D([], [], color="black", marker="X", markersize=9, markeredgecolor="white",
                               linestyle="none", label="reversal"))  # fmt: skip
     if limited:

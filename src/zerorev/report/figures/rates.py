@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Plan
+from zerorev.model.strokes import each_stroke
 from zerorev.motion.drilling import Drilling
 from zerorev.report.figures import style
 from zerorev.report.scene.bracket import Bracket, bracket
@@ -27,17 +28,17 @@ def critical_rates(plan: Plan, hole: HolePlan | str | None = None, *, ax: Axes |
     """The six critical twist rates [deg/mm] at the target against its spin [deg], on the chosen branch.
 
     The slopes of the two legs are the bracket; a joint whose critical rate lies outside it at the chosen spin reverses
-    at the target.
+    at the target. Of a hole of several strokes the last one is drawn, which gets to the target; others by their ids.
 
     Args:
         plan: whose robot and tool move.
-        hole: of the plan, or its id; None: the first that has a motion.
+        hole: of the plan, or its id, or that of a stroke; None: the first that has a motion.
         ax: to draw into; None: a figure with a heading.
 
     Raises:
         InputError: there is no such hole, or it has no motion.
     """
-    hole = style.hole_of(plan, hole)
+    hole = each_stroke(style.hole_of(plan, hole))[-1]
     motion = style.motion_of(hole)
     rates = bracket(
         Drilling.of(plan, hole.hole), motion.profile, motion.branch, SPIN_STEP, plan.settings.of(hole.hole).creep

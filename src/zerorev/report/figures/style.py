@@ -24,6 +24,7 @@ from matplotlib.patheffects import AbstractPathEffect, withStroke
 from zerorev.errors import InputError
 from zerorev.model._arrays import Array
 from zerorev.model.plan import HolePlan, Motion, Plan
+from zerorev.model.strokes import each_stroke
 from zerorev.report.scene.palette import (
     BASELINE_COLOUR,
     CANNOT_RUN,
@@ -35,6 +36,7 @@ from zerorev.report.scene.palette import (
     REVERSAL_COLOURS,
     signed,
 )
+from zerorev.report.words.tables import branch_cell
 
 __all__ = [
     "BASELINE_COLOUR",
@@ -84,13 +86,14 @@ def hole_of(plan: Plan, hole: HolePlan | str | None) -> HolePlan:
 
     Args:
         plan: with the hole.
-        hole: one of its holes, or the id of one; None: the first that has a motion.
+        hole: one of its holes, or the id of one, or of a stroke; None: the first that has a motion.
 
     Raises:
         InputError: there is no such hole, or it has no motion to draw.
     """
     if isinstance(hole, str):
-        found = next((each for each in plan.holes if each.hole.id == hole), None)
+        strokes = (stroke for each in plan.holes for stroke in each_stroke(each))
+        found = next((each for each in (*plan.holes, *strokes) if each.hole.id == hole), None)
     elif hole is None:
         found = next((each for each in plan.holes if each.motion is not None), None)
     else:
@@ -176,12 +179,13 @@ def hole_heading(plan: Plan, hole: HolePlan) -> str:
 
 
 def hole_words(hole: HolePlan) -> str:
-    """Hole, branch and reversals, in a line."""
+    """Hole, its strokes if there are several, branch and reversals, in a line."""
     name = hole.hole.id if len(hole.hole.id) <= TITLE_LENGTH else f"{hole.hole.id[: TITLE_LENGTH - 1]}…"
     reversals = "?" if hole.score is None else str(hole.score.reversals)
     if hole.baseline is not None:
         reversals = f"{hole.baseline.reversals} at constant spin, {reversals} here"
-    return f"hole {name}   |   branch {motion_of(hole).branch}   |   reversals: {reversals}"
+    strokes = f"   |   {len(hole.strokes)} strokes" if hole.strokes else ""
+    return f"hole {name}{strokes}   |   branch {branch_cell(hole)}   |   reversals: {reversals}"
 
 
 def bare_axes(axes: Axes) -> None:

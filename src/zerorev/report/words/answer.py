@@ -38,6 +38,7 @@ class Shown:
             answers: to take at once.
         """
         self._plan, self._rows = plan, list[HolePlan]()
+        self._lines = 0  # of the table, with those of strokes
         self._findings: list[Finding] = [
             *plan.findings, *(finding for move in plan.transitions for finding in move.findings)
         ]  # fmt: skip
@@ -63,8 +64,9 @@ class Shown:
         self._status[answer.status] += 1
         self._bounded += answer.optimality is not None
         self._proven += answer.optimality is not None and answer.optimality.proven
-        if len(self._rows) <= ROWS:
+        if self._lines <= ROWS:
             self._rows.append(answer)
+        self._lines += 1 + len(answer.strokes)
         for name, value in self._values(answer):
             self._figures[name].add(value, answer.hole.id)
         if answer.score is not None:
@@ -105,8 +107,8 @@ class Shown:
         terminal.print_lines(self.lines())
 
     def table(self) -> Table:
-        """A row per hole or, of many, a row per figure."""
-        if len(self._rows) <= ROWS:
+        """A row per hole and stroke or, of many, a row per figure."""
+        if self._lines <= ROWS:
             return tables.plan_table(replace(self._plan, holes=tuple(self._rows)))
         table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
         table.add_column(Text("over all holes"))
@@ -120,7 +122,7 @@ class Shown:
     def lines(self) -> list[Text]:
         """How many holes of which kind, where they are many; what the deepest strokes are held to; what was found."""
         lines = []
-        if len(self._rows) > ROWS:
+        if self._lines > ROWS:
             kinds = ", ".join(f"{count} {status}" for status, count in sorted(self._status.items()))
             counts = ", ".join(f"{count} with {n} reversals" for n, count in sorted(self._reversals.items()))
             lines = [Text(f"{sum(self._status.values())} holes: {kinds}; {counts or 'no motion'}")]

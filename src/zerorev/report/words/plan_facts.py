@@ -19,11 +19,14 @@ from zerorev.report.words.hole_rows import part_data, standing
 from zerorev.report.words.lost_motion import PREDICTED, lost_motion_cell
 from zerorev.report.words.tables import (
     NO_BASELINE,
+    branch_cell,
     hole_check,
     hole_findings,
     no_baseline,
+    reversals_cell,
     slowest,
     spins_cell,
+    stroke_lines,
     wrist_reach,
 )  # fmt: skip
 
@@ -39,7 +42,7 @@ __all__ = [
     "move_row",
     "robot_facts",
     "summary_facts",
-    "table_row",
+    "table_rows",
     "tool_facts",
     "verdict",
     "why_bad",
@@ -248,19 +251,23 @@ def grouped(found: Sequence[Finding]) -> list[Said]:
     return said
 
 
-def table_row(plan: Plan, hole: HolePlan, number: int) -> Row:
-    """A hole as it stands in the table, drilled as the `number`-th."""
+def table_rows(plan: Plan, hole: HolePlan, number: int) -> list[Row]:
+    """A hole as it stands in the table, drilled as the `number`-th; under it its strokes, where there are several."""
+    strokes = [_row(plan, answer, "", in_air)._replace(id=name.strip()) for name, answer, in_air in stroke_lines(hole)]
+    return [_row(plan, hole, f"{number}", 0), *strokes]
+
+
+def _row(plan: Plan, hole: HolePlan, number: str, in_air: int) -> Row:
     target, direction, depth = part_data(hole.hole, plan.T_base_part)
     place = (_listed(np.round(target, 3)), _listed(np.round(direction, 4)), f"{depth:g}")
     deepest = "–" if hole.deepest is None else f"{float(mm(hole.deepest)):.1f}"
     if hole.motion is None or hole.score is None:
         return Row("–", hole.hole.id, *place, "no motion", "–", "–", "–", "–", deepest, "–", "–", "–", "bad")
-    before = "?" if hole.baseline is None else str(hole.baseline.reversals)
     slow = slowest(hole.score, plan.settings)
     tones: dict[str, Tone] = {"zero": "", "reversals": "warn", "failed": "bad"}
     return Row(
-        f"{number}", hole.hole.id, *place, f"{before} → {hole.score.reversals}", f"{float(deg(hole.score.travel)):.1f}",
-        str(hole.motion.branch), spins_cell(hole.motion.profile),
+        number, hole.hole.id, *place, reversals_cell(hole, in_air), f"{float(deg(hole.score.travel)):.1f}",
+        branch_cell(hole), spins_cell(hole),
         "–" if slow is None else f"{np.rad2deg(slow[0]) / 1e3:.4f} {plan.robot.joint_names[slow[1]]}", deepest,
         lost_motion_cell(hole.lost_motion), "–" if hole.cycle_time is None else f"{hole.cycle_time:.1f}",
         hole_check(hole).plain, tones[standing(hole)],

@@ -14,18 +14,20 @@ from zerorev.files.conversion import robot_data
 from zerorev.model.finding import Finding, Level
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan, Score, named_holes
-from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
+from zerorev.model.strokes import each_stroke
 from zerorev.report.words.as_shown import controller_rows, turning_note
 from zerorev.report.words.lost_motion import HEADING, lost_motion_cell
 
 __all__ = [
     "NO_BASELINE",
+    "branch_cell",
     "finding_lines",
     "hole_check",
     "hole_findings",
     "no_baseline",
     "plan_table",
+    "reversals_cell",
     "robot_heading",
     "robot_lines",
     "robot_sheet",
@@ -34,6 +36,7 @@ __all__ = [
     "robots_table",
     "slowest",
     "spins_cell",
+    "stroke_lines",
 ]
 
 NO_BASELINE = "? → …: with constant spin the hole cannot be run at all"
@@ -45,7 +48,7 @@ MESSAGES_SHOWN = {"error": 8, "warning": 3, "info": 1}  # of one kind of finding
 def plan_table(plan: Plan) -> Table:
     """One row per hole: reversals, travel, branch, spins, slowest joint, deepest stroke, time, outcome of the check.
 
-    And the predicted lost motion, where there is one at all.
+    And the predicted lost motion, where there is one at all. Under a hole of several strokes a row for each of them.
     """
     weighed = any(hole.lost_motion is not None for hole in plan.holes)
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -61,24 +64,32 @@ def plan_table(plan: Plan) -> Table:
         table.add_column(Text(HEADING), justify="right")
     table.add_column(Text("verified"))
     for hole in plan.holes:
-        *cells, verdict = _cells(plan, hole)
-        lost = [Text(lost_motion_cell(hole.lost_motion))] if weighed else []
-        table.add_row(Text(hole.hole.id), *cells, *lost, verdict)
+        for name, answer, in_air in [(hole.hole.id, hole, 0), *stroke_lines(hole)]:
+            *cells, verdict = _cells(plan, answer, in_air)
+            lost = [Text(lost_motion_cell(answer.lost_motion))] if weighed else []
+            table.add_row(Text(name), *cells, *lost, verdict)
     return table
 
 
-def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
+def stroke_lines(hole: HolePlan) -> list[tuple[str, HolePlan, int]]:
+    """Of each stroke of a hole of several: how its line is called, its answer, the reversals in the air before it."""
+    return [
+        (f"  stroke {n}, {stroke.answer.hole.depth * 1e3:.6g} mm", stroke.answer, stroke.reversals_in_air)
+        for n, stroke in enumerate(hole.strokes, 1)
+    ]
+
+
+def _cells(plan: Plan, hole: HolePlan, in_air: int) -> list[Text]:
     motion, score = hole.motion, hole.score
     if motion is None or score is None:
         cells = ("infeasible", *"––––", _deepest(hole), *"––")
         return [Text(cell, style="red" if n == 0 else "") for n, cell in enumerate(cells)]
-    before = "?" if hole.baseline is None else str(hole.baseline.reversals)
     slow = slowest(score, plan.settings)
     return [
-        Text(f"{before} → {score.reversals}", style="green" if score.reversals == 0 else "yellow"),
+        Text(reversals_cell(hole, in_air), style="green" if score.reversals == 0 else "yellow"),
         Text(_number(np.rad2deg(score.travel), 1)),
-        Text(str(motion.branch)),
-        Text(spins_cell(motion.profile)),
+        Text(branch_cell(hole)),
+        Text(spins_cell(hole)),
         Text("–" if slow is None else f"{_number(np.rad2deg(slow[0]) * 1e-3, 4)} {plan.robot.joint_names[slow[1]]}"),
         Text(_deepest(hole)),
         Text("–" if hole.cycle_time is None else _number(hole.cycle_time, 1)),
@@ -86,8 +97,31 @@ def _cells(plan: Plan, hole: HolePlan) -> list[Text]:
     ]
 
 
-def spins_cell(profile: Profile) -> str:
-    """Spins [deg] at start, target and end; the dots between them stand for what a long profile has there."""
+def reversals_cell(hole: HolePlan, in_air: int = 0) -> str:
+    """Reversals of the baseline and of the motion; and how many are in the air before, where there are any."""
+    before = "?" if hole.baseline is None else str(hole.baseline.reversals)
+    after = "?" if hole.score is None else str(hole.score.reversals)
+    return f"{before} → {after}" + (f", {in_air} in the air" if in_air else "")
+
+
+def branch_cell(hole: HolePlan) -> str:
+    """The branch of the motion, or those of the strokes."""
+    found = {answer.motion.branch for answer in each_stroke(hole) if answer.motion is not None}
+    return ", ".join(map(str, sorted(found)))
+
+
+def spins_cell(hole: HolePlan) -> str:
+    """Spins [deg] at start, target and end; the dots between them stand for what a long profile has there.
+
+    Of a hole of several strokes how many there are: each has spins of its own.
+
+    Args:
+        hole: with a motion.
+    """
+    if hole.strokes:
+        return f"{len(hole.strokes)} strokes"
+    assert hole.motion is not None
+    profile = hole.motion.profile
     ends = [float(profile.psi[at]) for at in (0, profile.corner, -1)]
     between = "  " if len(profile.psi) == len(ends) else " … "
     return between.join(_number(spin, 2) for spin in np.rad2deg(ends))

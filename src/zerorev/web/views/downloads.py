@@ -127,7 +127,7 @@ def _figures(session: Session, work: Work, *, one: bool) -> None:
     if one:
         plan = _only(plan, session.state)
 
-    from zerorev.report.figures import FIGURES, drawn
+    from zerorev.report.figures import drawn, picture_count
 
     def run() -> Iterator[bytes | None]:
         pictures = []
@@ -136,9 +136,8 @@ def _figures(session: Session, work: Work, *, one: bool) -> None:
             yield None
         yield zipped(pictures)
 
-    count = len(FIGURES) * sum(hole.motion is not None for hole in plan.holes)
     save = partial(ui.download.content, filename=f"{stem(plan.name)}.figures.zip", media_type="application/zip")
-    make(session, work, "drawing", count + 1, run, save, each="figure")
+    make(session, work, "drawing", picture_count(plan) + 1, run, save, each="figure")
 
 
 def _replay(session: Session, work: Work) -> None:
