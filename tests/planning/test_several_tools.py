@@ -149,9 +149,43 @@ def test_the_plan_of_the_command_is_that_of_the_library(files, plan):
     assert plan_to_json(read_plan(files / "two.plan.json")) == plan_to_json(plan)
 
 
-def test_other_commands_say_that_only_the_first_tool_counts(files, capsys):
-    assert main(["rates", str(files / "two.yaml")]) == 0
+def test_commands_with_no_choice_say_that_only_the_first_tool_counts(files, capsys):
+    assert main(["offset", str(files / "two.yaml"), "--offsets-mm", "100"]) in (0, 1)
     assert "the job has 2 tools; here only the first one counts" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [["rates", "two.yaml"], ["compare", "two.plan.json", "two.yaml"]])
+def test_a_table_is_of_the_chosen_tool_and_says_that_there_are_others(command, files, capsys, monkeypatch):
+    monkeypatch.chdir(files)
+    assert main(command) == 0
+    first = capsys.readouterr()
+    assert "this is tool 1 of 2, tool; --tool 2 shows the other" in first.err
+    assert main([*command, "--tool", "2"]) == 0
+    second = capsys.readouterr()
+    assert "tool 1 of 2" not in second.err
+    assert second.out != first.out
+    assert main([*command, "--tool", "0"]) == 2
+    assert "there is no tool 0 (accepted: 1 to 2)" in capsys.readouterr().err
+
+
+def test_the_virtual_cell_runs_the_strokes_of_the_chosen_tool(files, capsys):
+    simulate = ["simulate", str(files / "two.plan.json"), "--sets", "1", "--json", "--workers", "1"]
+    assert main(simulate) == 0
+    first = capsys.readouterr()
+    assert [hole["id"] for hole in json.loads(first.out)["holes"]] == ["a, stroke 1", "a, stroke 2", "b"]
+    assert "this is tool 1 of 2" in first.err
+    assert main([*simulate, "--tool", "2"]) == 0
+    assert [hole["id"] for hole in json.loads(capsys.readouterr().out)["holes"]] == ["a", "b"]
+
+
+def test_the_replay_is_of_the_chosen_tool(files, capsys):
+    pytest.importorskip("nicegui", reason="the replay takes three.js from NiceGUI (pip install 'zerorev[view]')")
+    first, second = files / "first.html", files / "second.html"
+    assert main(["replay", str(files / "two.plan.json"), "-o", str(first)]) == 0
+    assert "this is tool 1 of 2" in capsys.readouterr().err
+    assert main(["replay", str(files / "two.plan.json"), "-o", str(second), "--tool", "2"]) == 0
+    assert "(the first of 2)" in first.read_text()
+    assert "Replay of two_tool_2" in second.read_text()
 
 
 def test_the_page_does_not_lose_the_other_tools(files):

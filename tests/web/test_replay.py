@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from oracles.published import POSITIONS
-from zerorev.files.io import read_robot
+from zerorev.files.io import job_from_dict, read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Plan
@@ -17,6 +17,7 @@ from zerorev.model.profile import Profile
 from zerorev.motion.evaluation import evaluate
 from zerorev.motion.kinematics import forward, tcp_pose, wrist_offset
 from zerorev.motion.links import link_frames
+from zerorev.planning.job import plan_job
 from zerorev.report.scene.cell_data import slice_data
 from zerorev.report.scene.replay import replay_page
 from zerorev.report.scene.urdf_meshes import Mesh
@@ -136,6 +137,31 @@ def test_it_plays_and_pauses_by_keyboard(open_replay):
     assert "spin" in text
     canvas.press("End")
     assert page.get_by_test_id("cell-time").inner_text() == "12.5 s of 12.5 s"
+
+
+def test_the_strokes_of_a_hole_are_played_one_after_the_other(browser, tmp_path):
+    hole = {"id": "a", "target_mm": [500, 300, 800], "direction": [1, 0, 0], "depth_mm": 6}
+    job = {"robot": "kuka_kr6_r700_2", "tool": "thesis_drill", "proof_boxes": 0, "holes": [hole, hole | {"id": "b"}]}
+    made = plan_job(job_from_dict(job | {"cycle": {"kind": "peck", "depth_mm": 3}}))
+    path = tmp_path / "replay.html"
+    path.write_text(replay_page(made), encoding="utf-8")
+    context = browser.new_context(viewport={"width": 1000, "height": 700}, offline=True, reduced_motion="reduce")
+    page = context.new_page()
+    page.goto(path.as_uri())
+    said = page.get_by_test_id("replay-stroke")
+    said.wait_for()
+    assert said.inner_text().startswith("Stroke 1 of 2.")
+    page.get_by_test_id("cell-speed").select_option("4")
+    page.get_by_test_id("cell-play").click()
+    page.get_by_text("Stroke 2 of 2.").wait_for()
+    assert page.get_by_test_id("replay-hole").input_value() == "1"
+    assert page.evaluate(f"{CELL}.hole") == "a, stroke 2"
+    until(page, f"!{CELL}.playing")  # it ends with the hole
+    assert page.get_by_test_id("replay-hole").input_value() == "1"
+    assert page.evaluate(f"{CELL}.x") == pytest.approx(6)
+    assert page.evaluate(f"{CELL}.holes.ids") == ["a", "b"]
+    assert page.evaluate(f"{CELL}.holes.selected") == 0
+    context.close()
 
 
 def test_baseline_beside_and_as_a_ghost(open_replay):

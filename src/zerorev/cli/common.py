@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from cyclopts import App, Parameter, Token
 
@@ -15,6 +15,7 @@ from zerorev.workers import Machines
 
 if TYPE_CHECKING:
     from zerorev.model.job import Job
+    from zerorev.model.plan import Plan
 
 __all__ = [
     "BAD_INPUT",
@@ -34,6 +35,7 @@ __all__ = [
     "need_maps",
     "need_report",
     "numbers",
+    "of_tool",
     "recordings_app",
 ]  # fmt: skip
 
@@ -94,12 +96,35 @@ def _whole(kind: object, tokens: Sequence[Token]) -> int:
 Whole = Annotated[int, Parameter(converter=_whole)]
 
 
+Several = TypeVar("Several", "Plan", "Job")
+
+
+def of_tool(whole: Several, tool: int | None) -> Several:
+    """What one of the tools of a plan or of a job does; where none is chosen, the first, with a note of the others.
+
+    Args:
+        whole: of all tools.
+        tool: from 1; None: not chosen.
+
+    Raises:
+        InputError: there is no such tool.
+    """
+    count = len(whole.of_all_tools)
+    if tool is not None and not 1 <= tool <= count:
+        raise InputError(f"there is no tool {tool}", where="--tool", accepted=f"1 to {count}")
+    if tool is None and count > 1:
+        others = "--tool 2 shows the other" if count == 2 else f"--tool 2 to --tool {count} show the others"
+        terminal.note(f"{whole.name}: this is tool 1 of {count}, {whole.tool.name}; {others}")
+    return whole.of_all_tools[(tool or 1) - 1]
+
+
 def job_of(path: Path, *, every_tool: bool = False, **how: Any) -> Job:
     """The job of a file, as `files.io.read_job` has it; what was left out of its list of holes is noted beside.
 
     Args:
         path: of the file.
-        every_tool: whether the command deals with all tools of the job; else it is noted that only the first counts.
+        every_tool: whether the command deals with all tools of the job, or with the one that `of_tool` chooses; else it
+            is noted that only the first counts.
         how: as `read_job` takes it.
     """
     from zerorev.files.io import read_job

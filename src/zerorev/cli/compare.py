@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from zerorev.cli.common import FINE, FOUND, app, job_of
+from zerorev.cli.common import FINE, FOUND, Whole, app, job_of, of_tool
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -19,7 +20,15 @@ ACCEPTED = "a plan file (JSON) or a job file (YAML)"
 
 
 @app.command
-def compare(first: Path, second: Path | None = None, /, *, workers: int | None = None, json: bool = False) -> int:
+def compare(
+    first: Path,
+    second: Path | None = None,
+    /,
+    *,
+    tool: Whole | None = None,
+    workers: int | None = None,
+    json: bool = False,
+) -> int:
     """Compare two plans hole by hole: reversals, travel, margin, deepest, lost motion, time; and say which is better.
 
     A hole of the same id is the same hole. A job is planned first, and its plan not kept: to keep it, plan it with -o
@@ -28,6 +37,7 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
     Args:
         first: A plan file (JSON) or a job file (YAML).
         second: Another, to be set beside it.
+        tool: Of plans and jobs of several tools: what this one does, from 1; by default the first.
         workers: Processes to plan a job on; by default all cores where it is large enough.
         json: Print the answer as JSON on standard output, and nothing else there.
     """
@@ -38,7 +48,7 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
             "side by side by zerorev methods JOB.yaml",
         )  # fmt: skip
     paths = first, second
-    read = [_read(path) for path in paths]  # both, before either is planned
+    read = [_read(path, tool) for path in paths]  # both, before either is planned
     plans = [_planned(found, path, workers) for found, path in zip(read, paths, strict=True)]
 
     from zerorev.planning.compared import compared
@@ -55,16 +65,16 @@ def compare(first: Path, second: Path | None = None, /, *, workers: int | None =
     return FINE if all(Shown(plan, plan.holes).sound for plan in plans) else FOUND
 
 
-def _read(path: Path) -> Plan | Job:
-    """The plan or the job of a file."""
+def _read(path: Path, tool: int | None) -> Plan | Job:
+    """The plan or the job of a file, of one tool."""
     from zerorev.files.io import plan_from_text
     from zerorev.files.other_kinds import is_plan
     from zerorev.files.text import read_text
 
     text = read_text(path, ACCEPTED)
     if is_plan(text, path.name):
-        return plan_from_text(text, str(path))
-    return job_of(path)
+        return of_tool(plan_from_text(text, str(path)), tool)
+    return replace(of_tool(job_of(path, every_tool=True), tool), further=())
 
 
 def _planned(found: Plan | Job, path: Path, workers: int | None) -> Plan:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, Output, Whole, app, check_outputs
+from zerorev.cli.common import FINE, Output, Whole, app, check_outputs, of_tool
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -105,13 +105,11 @@ def export(
 
 def _wanted(plan: Plan, tool: int | None, output: Path | None, *, alone: bool) -> list[tuple[Plan, Path | None]]:
     """The plans of the tools whose programs are wanted, and where each goes."""
-    tools = plan.of_all_tools
-    if tool is not None and not 1 <= tool <= len(tools):
-        raise InputError(f"there is no tool {tool}", where="--tool", accepted=f"1 to {len(tools)}")
-    if alone and tool is None and len(tools) > 1:
-        raise InputError("is missing", where="--tool", accepted=f"1 to {len(tools)}: the tool that is in the hole")
     if tool is not None:
-        return [(tools[tool - 1], output)]
+        return [(of_tool(plan, tool), output)]
+    tools = plan.of_all_tools
+    if alone and len(tools) > 1:
+        raise InputError("is missing", where="--tool", accepted=f"1 to {len(tools)}: the tool that is in the hole")
     places = [
         output if output is None or n == 1 else output.with_name(f"{output.stem}_tool_{n}{output.suffix}")
         for n in range(1, len(tools) + 1)

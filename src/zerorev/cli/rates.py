@@ -5,22 +5,23 @@ from __future__ import annotations
 import math
 from pathlib import Path
 
-from zerorev.cli.common import FINE, app, job_of
+from zerorev.cli.common import FINE, Whole, app, job_of, of_tool
 from zerorev.report.words import terminal
 
 __all__ = ["rates"]
 
 
 @app.command
-def rates(job: Path, /, *, psi_deg: float | None = None, json: bool = False) -> int:
+def rates(job: Path, /, *, psi_deg: float | None = None, tool: Whole | None = None, json: bool = False) -> int:
     """Show the critical twist rates of each hole and what they predict, before any search.
 
     Args:
         job: The job file (YAML): robot, tool, holes.
         psi_deg: Show the rates at this spin on every branch that reaches, instead of where zero reversals are cheapest.
+        tool: Of a job of several tools: those of this one, from 1; by default the first.
         json: Print JSON on standard output, and nothing else there.
     """
-    wanted = job_of(job)
+    wanted = of_tool(job_of(job, every_tool=True), tool)
 
     from zerorev.motion.critical import critical_at
     from zerorev.motion.drilling import Drilling

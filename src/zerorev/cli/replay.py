@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, app, check_outputs, need
+from zerorev.cli.common import FINE, Whole, app, check_outputs, need, of_tool
 from zerorev.report.words import terminal
 
 __all__ = ["replay"]
@@ -20,6 +20,7 @@ def replay(
     *,
     output: Annotated[Path, Parameter(name=["--output", "-o"])],
     hole: tuple[str, ...] = (),
+    tool: Whole | None = None,
     urdf: Path | None = None,
 ) -> int:
     """Write the motions of a plan as one HTML file that plays them in any browser, with no network.
@@ -28,6 +29,7 @@ def replay(
         plan: The plan file (JSON).
         output: The HTML file.
         hole: Only this hole; may be given several times. By default all holes of the plan.
+        tool: Of a plan of several tools: what this one does, from 1; by default the first.
         urdf: Description of the plan's robot (URDF), whose meshes are shown; they lie in the same folder, or
             in a folder above it that is called as the package they name (package://).
     """
@@ -38,7 +40,7 @@ def replay(
     if urdf is not None:
         need("trimesh", "trimesh", "--urdf", "view")
     check_outputs((output,), plan, *([urdf] if urdf else []))
-    answer = read_plan(plan)
+    answer = of_tool(read_plan(plan), tool)
 
     from zerorev.report.scene.replay import replay_page
     from zerorev.report.scene.urdf_meshes import read_meshes

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from zerorev.cli.common import FINE, FOUND, Output, Whole, app, machines, need
+from zerorev.cli.common import FINE, FOUND, Output, Whole, app, machines, need, of_tool
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -27,6 +27,7 @@ def simulate(
     thrust_n: float | None = None,
     corner_mm: float | None = None,
     vary_cell: bool = False,
+    tool: Whole | None = None,
     output: Output = None,
     figures: Path | None = None,
     workers: int | None = None,
@@ -51,6 +52,7 @@ def simulate(
         thrust_n: Thrust of the drill while it cuts; by default the plan's thrust_n.
         corner_mm: Radius of the blend at the corner; by default as planned.
         vary_cell: Vary the corner, acceleration, smoothing and the tool centre point, too.
+        tool: Of a plan of several tools: what this one does, from 1; by default the first.
         output: Folder of zarr for all figures of all sets. With it an interrupted study resumes.
         figures: Folder for pictures (PNG); it is made if its parent exists.
         workers: Processes to run it on; by default all cores where it is worth it. The answer is the same.
@@ -85,7 +87,7 @@ def simulate(
     from zerorev.model.strokes import by_stroke
     from zerorev.report.words import study as shown
 
-    stated = by_stroke(read_plan(plan))
+    stated = by_stroke(of_tool(read_plan(plan), tool))
     thrust = stated.settings.thrust if thrust_n is None else thrust_n
     known_arm = Cell() if cell is None else read_cell(cell)
     check_robot(known_arm, stated.robot.name, str(cell))

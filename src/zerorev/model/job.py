@@ -84,3 +84,8 @@ class Job:
             if hole.profile is None:
                 cycle.check_count(hole.depth, f"hole {hole.id}, cycle, depth_mm")
         check_robot(self.robot, self.settings)
+
+    @property
+    def of_all_tools(self) -> tuple[Job, ...]:
+        """This job, of the first tool, and those of the further ones."""
+        return (self, *self.further)

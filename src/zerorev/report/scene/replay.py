@@ -10,14 +10,14 @@ from html import escape
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from zerorev.errors import InputError
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model.plan import HolePlan, Plan
-from zerorev.model.strokes import by_stroke, ids_of_strokes
+from zerorev.model.strokes import each_stroke
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.cell_data import SAMPLES, arm_data, holes_data, motion_data
 from zerorev.report.scene.urdf_meshes import Mesh
@@ -44,27 +44,28 @@ POINTS, FEWEST_SAMPLES = 24_000, 24  # of all motions together, and of one
 def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[Sequence[Mesh]] | None = None) -> str:
     """The whole file: the player, the robot, and the holes with their motions, figures and findings.
 
+    The strokes of a hole are played one after the other, but for the moves between them.
+
     Args:
-        plan: of which.
-        ids: of the holes that are in it, in the order of the plan; None: all of them.
+        plan: of which; of several tools the first one is shown.
+        ids: of the holes, or of single strokes, that are in it, in the order of the plan; None: all of them.
         meshes: of the robot's links, in place of shapes made from its geometry (`report.urdf_meshes`).
 
     Raises:
         InputError: an unknown id, no hole with a motion, too many holes, or the player's library is not installed.
     """
-    plan, ids = by_stroke(plan), None if ids is None else ids_of_strokes(plan, ids)
     chosen = _chosen(plan, ids)
     samples = int(np.clip(POINTS // len(chosen), FEWEST_SAMPLES, SAMPLES))
-    holes = [answer.hole for answer in chosen]
+    holes = list({motion.whole.hole.id: motion.whole for motion in chosen}.values())
     data: dict[str, Any] = {
         "arm": arm_data(plan.robot, plan.tool, meshes),
-        "scene": holes_data(holes, plan.T_base_part, {answer.hole.id: answer for answer in chosen}),
-        "holes": [_hole(plan, answer, samples) for answer in chosen],
-        "note": f"Lost motion: {GUESSED} {WHERE_IT_HOLDS}" if any(answer.lost_motion for answer in chosen) else "",
+        "scene": holes_data([each.hole for each in holes], plan.T_base_part, {each.hole.id: each for each in holes}),
+        "holes": [_hole(plan, motion, samples) for motion in chosen],
+        "note": f"Lost motion: {GUESSED} {WHERE_IT_HOLDS}" if any(each.answer.lost_motion for each in chosen) else "",
     }
     parts = {
         "title": escape(f"Replay of {plan.name}"),
-        "subtitle": escape(f"{data['arm']['robot']}, tool {plan.tool.name}, {_count(len(chosen), 'hole')}"),
+        "subtitle": escape(f"{data['arm']['robot']}, {_tool(plan)}, {_what(len(holes), len(chosen))}"),
         "version": escape(version("zerorev")),
         "shapes": "the robot's description" if meshes else "its geometry, not from the maker's drawings",
         "style": (STATIC / "replay.css").read_text() + (STATIC / "cell.css").read_text(),
@@ -75,21 +76,47 @@ def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[S
     return re.sub(r"\{\{(\w+)\}\}", lambda found: parts[found[1]], template)  # once: what is put in is not examined
 
 
-def _chosen(plan: Plan, ids: Sequence[str] | None) -> list[HolePlan]:
-    known = [answer.hole.id for answer in plan.holes]
+class _Motion(NamedTuple):
+    """What is played at a time: a hole, or one of its strokes, and which of how many that is, from 1."""
+
+    whole: HolePlan
+    answer: HolePlan
+    number: int
+    of: int
+
+
+def _tool(plan: Plan) -> str:
+    """The tool, and that there are others, which are not in the file."""
+    others = f" (the first of {len(plan.of_all_tools)})" if plan.further else ""
+    return f"tool {plan.tool.name}{others}"
+
+
+def _what(holes: int, motions: int) -> str:
+    return _count(holes, "hole") + (f", {motions:,} strokes" if motions > holes else "")
+
+
+def _chosen(plan: Plan, ids: Sequence[str] | None) -> list[_Motion]:
+    motions = [
+        _Motion(hole, answer, number, max(len(hole.strokes), 1))
+        for hole in plan.holes
+        for number, answer in enumerate(each_stroke(hole), 1)
+    ]
+    known = {name for motion in motions for name in (motion.whole.hole.id, motion.answer.hole.id)}
     for name in ids or ():
         if name not in known:
-            few = ", ".join(known[:6]) + (", ..." if len(known) > 6 else "")
+            holes = [hole.hole.id for hole in plan.holes]
+            few = ", ".join(holes[:6]) + (", ..." if len(holes) > 6 else "")
             raise InputError(f"no hole '{name}' in the plan", where="hole", accepted=few)
-    chosen = [answer for answer in plan.holes if ids is None or answer.hole.id in ids]
-    if not any(answer.motion for answer in chosen):
+    chosen = [motion for motion in motions if ids is None or {motion.whole.hole.id, motion.answer.hole.id} & set(ids)]
+    if not any(motion.answer.motion for motion in chosen):
         raise InputError("no motion to replay", where=f"plan {plan.name}", accepted="a planned or evaluated hole")
     if len(chosen) > MOST_HOLES:
         raise InputError(f"{len(chosen):,} holes", where="replay", accepted=f"{MOST_HOLES:,} or less: choose some")
     return chosen
 
 
-def _hole(plan: Plan, answer: HolePlan, samples: int) -> dict[str, Any]:
+def _hole(plan: Plan, playing: _Motion, samples: int) -> dict[str, Any]:
+    answer = playing.answer
     motion, score = answer.motion, answer.score
     played = None
     if motion is not None:
@@ -97,6 +124,8 @@ def _hole(plan: Plan, answer: HolePlan, samples: int) -> dict[str, Any]:
         played = motion_data(drilling, motion.profile, motion.branch, plan.settings, samples)
     return {
         "id": answer.hole.id,
+        "hole": playing.whole.hole.id,
+        "stroke": [playing.number, playing.of],
         "verdict": "no motion" if score is None else _count(score.reversals, "reversal"),
         "tone": "bad" if score is None else "warn" if score.reversals else "good",
         "figures": _figures(plan, answer),

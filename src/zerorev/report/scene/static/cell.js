@@ -13,7 +13,7 @@ const SELDOM = 2000; // [ms] between two drawings of answers that come one after
 const REST = 300; // [ms] that an edited motion has to rest before it is drawn where drawing is slow
 
 export class Cell {
-  // root: an empty element; on: pickHole(id), pickCell(number), seek(x); fine: as it is with graphics hardware
+  // root: an empty element; on: pickHole(id), pickCell(number), seek(x), ended(); fine: as it is with graphics hardware
   constructor(root, on = {}, { fine = root.hasAttribute("data-fine") } = {}) {
     this.on = on;
     this.fine = fine;
@@ -354,7 +354,8 @@ export class Cell {
     const seconds = this.track.secondsAt(this.x) + passed * this.speed;
     if (seconds >= this.track.duration) {
       this.seek(this.track.end, true);
-      return this.play(false);
+      this.play(false);
+      return void this.on.ended?.();
     }
     this.seek(this.track.xAfter(seconds), true);
   }

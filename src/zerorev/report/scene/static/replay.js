@@ -16,7 +16,12 @@ export function show(page) {
   button.addEventListener("click", () => dress(root.dataset.theme !== "dark"));
 
   const place = page.getElementById("cell");
-  const cell = new Cell(place, { pickHole: (id) => choose(data.holes.findIndex((hole) => hole.id === id)) });
+  let at = -1;
+  const next = () => at + 1 < data.holes.length && data.holes[at + 1].hole === data.holes[at].hole; // another stroke of it
+  const cell = new Cell(place, {
+    pickHole: (id) => choose(data.holes.findIndex((hole) => hole.hole === id)),
+    ended: () => next() && (choose(at + 1), cell.play(true)),
+  });
   list.append(...data.holes.map((hole, i) => element("option", { value: i }, `${hole.id} (${hole.verdict})`)));
   list.addEventListener("change", () => choose(Number(list.value)));
   cell.showScene({ arm: data.arm, holes: data.scene });
@@ -25,8 +30,9 @@ export function show(page) {
   function choose(i) {
     const hole = data.holes[i];
     if (!hole) return;
+    at = i;
     list.value = i;
-    cell.showScene({ selected: hole.id });
+    cell.showScene({ selected: hole.hole });
     cell.showMotion(hole.motion);
     page.getElementById("figures").replaceChildren(...figures(hole, data.note));
   }
@@ -35,12 +41,15 @@ export function show(page) {
 function figures(hole, note) {
   const row = ([name, planned, constant]) =>
     element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, planned), element("td", {}, constant));
-  const parts = [
+  const [number, of] = hole.stroke;
+  const parts = of === 1 ? [] : [element("p", { "data-testid": "replay-stroke" },
+    `Stroke ${number} of ${of}. They are played one after the other; the moves between them are not shown.`)];
+  parts.push(
     element("p", { class: `verdict ${hole.tone}`, "data-testid": "replay-verdict" }, hole.verdict),
     element("table", {},
       element("thead", {}, element("tr", {}, element("th", {}, ""), element("th", {}, "planned"), element("th", {}, "constant spin"))),
       element("tbody", {}, ...hole.figures.map(row))),
-  ];
+  );
   if (hole.findings.length)
     parts.push(element("ul", {}, ...hole.findings.map(([level, message]) =>
       element("li", {}, element("b", { class: TONES[level] }, level), message))));
