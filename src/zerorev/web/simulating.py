@@ -11,12 +11,11 @@ from zerorev.cell.ensemble import HoleStudy, study
 from zerorev.cell.possible import possible_arms
 from zerorev.cell.reference import Manner
 from zerorev.errors import InputError
-from zerorev.model.strokes import by_stroke
 from zerorev.planning.hole import plan
 from zerorev.planning.job import unanswered
 from zerorev.web.computing import Work
 from zerorev.web.real_arm import Asked, Simulated
-from zerorev.web.state import State, Steered, shown
+from zerorev.web.state import State, Steered, shown, shown_stroke
 from zerorev.workers import Machines
 
 __all__ = ["simulate"]
@@ -70,7 +69,7 @@ def _simulated(state: State, motion: Steered, asked: Asked) -> Iterator[Simulate
     job, hole, cell = state.job, state.hole, state.arm.cell
     assert job is not None
     assert hole is not None
-    answer = state.answer
+    answer = shown_stroke(state)
     if answer is None or state.steered is not None:
         answer = plan(job.robot, job.tool, replace(hole, profile=motion.profile, branch=motion.branch), job.settings)
     measured = {} if cell.conditioning is None else cell.conditioning.baseline
@@ -78,10 +77,8 @@ def _simulated(state: State, motion: Steered, asked: Asked) -> Iterator[Simulate
     arms = yield from possible_arms(
         unanswered(job, state.strokes, recorded), cell, asked.arms, asked.seed, block=BLOCK, machines=Machines()
     )
-    # of a hole that is drilled in several strokes the last one is shown
-    strokes = by_stroke(unanswered(job, state.strokes, (answer,)))
     for found in study(
-        strokes, arms.sets, manner=Manner(feed=asked.feed), thrust=asked.thrust,
+        unanswered(job, state.strokes, (answer,)), arms.sets, manner=Manner(feed=asked.feed), thrust=asked.thrust,
         motions=(), machines=Machines(), block=BLOCK, growing=True,
     ):  # fmt: skip
         if not isinstance(found, HoleStudy):

@@ -16,6 +16,7 @@ from zerorev.model.hole import Hole
 from zerorev.model.job import Job
 from zerorev.model.plan import HolePlan, Plan, Strokes, Transition, named_holes
 from zerorev.model.profile import Profile
+from zerorev.model.strokes import each_stroke, shifted
 from zerorev.planning.job import unanswered
 from zerorev.planning.likely_mistakes import likely_mistakes
 from zerorev.web.real_arm import RealArm
@@ -37,7 +38,9 @@ __all__ = [
     "plan_of",
     "selected",
     "shown",
+    "shown_stroke",
     "steered",
+    "with_stroke",
 ]
 
 NONE: Mapping[str, HolePlan] = MappingProxyType({})
@@ -92,6 +95,7 @@ class State:
         job: robot, tool, holes and settings, or None before anything is opened.
         answers: of the holes that have one, by their id; each is of the hole as it is in the job.
         selected: id of the selected hole, or None.
+        stroke: which of its strokes is shown where it is drilled in several, from 0.
         steered: the motion of the selected hole as the user edits it, or None: the planned one.
         strokes: whether the answers are of the strokes `asked` for or of each hole's `deepest`.
         progress: of the long work under way, or None.
@@ -109,6 +113,7 @@ class State:
     job: Job | None = None
     answers: Mapping[str, HolePlan] = field(default_factory=lambda: NONE)
     selected: str | None = None
+    stroke: int = 0
     steered: Steered | None = None
     strokes: Strokes = "asked"
     progress: Progress | None = None
@@ -199,7 +204,12 @@ def selected(state: State, hole: str) -> State:
     """
     if state.job is None or all(each.id != hole for each in state.job.holes):
         raise InputError(f"no hole '{hole}'", where="hole", accepted="the id of one of the job's holes")
-    return state if hole == state.selected else replace(state, selected=hole, steered=None)
+    return state if hole == state.selected else replace(state, selected=hole, stroke=0, steered=None)
+
+
+def with_stroke(state: State, number: int) -> State:
+    """Another stroke of the selected hole is shown, from 0; the edited motion is let go."""
+    return state if number == state.stroke else replace(state, stroke=number, steered=None)
 
 
 def steered(state: State, motion: Steered | None) -> State:
@@ -208,11 +218,25 @@ def steered(state: State, motion: Steered | None) -> State:
 
 
 def shown(state: State) -> Steered | None:
-    """The motion that the page shows of the selected hole: the edited one, or as planned."""
+    """The motion that the page shows of the selected hole: the edited one, or as planned, of the chosen stroke.
+
+    Its stand-offs are counted from the target of the hole.
+    """
     if state.steered is not None:
         return state.steered
-    motion = state.answer.motion if state.answer else None
-    return None if motion is None else Steered(motion.profile, motion.branch)
+    answer = shown_stroke(state)
+    if answer is None or answer.motion is None or state.answer is None:
+        return None
+    motion = shifted(answer.motion, state.answer.hole.depth - answer.hole.depth)
+    return Steered(motion.profile, motion.branch)
+
+
+def shown_stroke(state: State) -> HolePlan | None:
+    """The answer of the stroke that is shown of the selected hole; of a hole with no others that of the hole."""
+    if state.answer is None:
+        return None
+    strokes = each_stroke(state.answer)
+    return strokes[min(state.stroke, len(strokes) - 1)]
 
 
 def plan_of(state: State) -> Plan:

@@ -54,6 +54,7 @@ def bracket(session: Session) -> None:
         if (
             before.steered is not after.steered
             or before.answer is not after.answer
+            or before.stroke != after.stroke
             or before.selected != after.selected
         ):
             soon()

@@ -99,7 +99,7 @@ class _Sender:
             self._send_cells()
         if before.selected != after.selected:
             self._scene(selected=after.selected)
-        same_hole = before.hole is after.hole and old.settings is new.settings
+        same_hole = before.hole is after.hole and before.stroke == after.stroke and old.settings is new.settings
         if not same_hole or before.steered is not after.steered or before.answer is not after.answer:
             self._motion()
 

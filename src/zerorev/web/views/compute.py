@@ -78,7 +78,7 @@ def _wishes(session: Session, work: Work) -> None:
 
     def draw(state: State) -> None:
         row.set_visibility(state.progress is None)
-        keep.set_visibility(state.steered is not None)
+        keep.set_visibility(state.steered is not None and not (state.answer and state.answer.strokes))
         if state.job is not None and state.hole is not None:
             legs.set_value(state.job.settings.legs)
             branch.set_value(ANY if state.hole.branch is None else state.hole.branch)

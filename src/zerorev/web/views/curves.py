@@ -50,7 +50,8 @@ def curves(session: Session) -> None:
     soon = throttled(draw)
 
     def changed(before: State, after: State) -> None:
-        if before.steered is not after.steered or before.answer is not after.answer or before.hole is not after.hole:
+        of = ("steered", "answer", "hole", "stroke")
+        if any(getattr(before, name) is not getattr(after, name) for name in of):
             soon()
 
     draw()

@@ -121,4 +121,6 @@ def _lost(session: Session, form: Mapping[str, ui.input]) -> None:
 
 def _moved(before: State, after: State) -> bool:
     """Whether another motion is shown, or of another hole or job."""
-    return any(getattr(before, name) is not getattr(after, name) for name in ("steered", "answer", "hole", "job"))
+    return any(
+        getattr(before, name) is not getattr(after, name) for name in ("steered", "answer", "hole", "stroke", "job")
+    )

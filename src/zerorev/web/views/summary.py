@@ -11,7 +11,7 @@ from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.motion_look import look
 from zerorev.report.words.headline import Headline, headline
 from zerorev.web.session import Session
-from zerorev.web.state import State, selected, shown
+from zerorev.web.state import State, selected, shown, with_stroke
 from zerorev.web.throttle import throttled
 
 __all__ = ["summary"]
@@ -32,6 +32,7 @@ def summary(session: Session) -> None:
             with ui.element("div"):
                 name, place = ui.label().classes("zr-hole-name"), ui.label().classes("zr-muted")
             _step(session, 1, "chevron_right", "the next hole")
+        _strokes(session)
         with ui.element("div").classes("zr-count").props('role="status" aria-label="reversals"'):
             count = ui.html(sanitize=False).props('data-testid="summary-reversals"')
             ui.label("reversals").classes("zr-unit")
@@ -57,18 +58,51 @@ def summary(session: Session) -> None:
         for figure, text in zip(FIGURES, _figures(line), strict=True):
             cells[figure].set_content(text)
         verdict.set_content(f'<span class="zr-chip zr-{line.tone}"><b>{MARKS[line.tone]}</b> {line.verdict}</span>')
-        why.set_text("" if session.state.steered else line.why)  # of a motion by hand the map says it
+        why.set_text(_why(session.state, line))
 
     soon = throttled(draw)
 
     def changed(before: State, after: State) -> None:
         if before.steered is not after.steered:
             soon()
-        elif before.job is not after.job or before.selected != after.selected or before.answer is not after.answer:
+        elif any(getattr(before, name) is not getattr(after, name) for name in ("job", "selected", "answer", "stroke")):
             draw()
 
     draw()
     session.watch(changed)
+
+
+def _strokes(session: Session) -> None:
+    """Which stroke of the hole is shown, where it is drilled in several."""
+
+    def chosen(number: int | None) -> None:
+        if number is not None:
+            session.change(with_stroke(session.state, number))
+
+    choice = ui.select({0: ""}, on_change=lambda event: chosen(event.value)).classes("zr-choice")
+    choice.props('outlined dense options-dense aria-label="stroke that is shown" data-testid="stroke"')
+
+    def draw(state: State) -> None:
+        strokes = state.answer.strokes if state.answer else ()
+        choice.set_visibility(bool(strokes))
+        names = {n: f"stroke {n + 1}, {stroke.answer.hole.depth * 1e3:.6g} mm" for n, stroke in enumerate(strokes)}
+        if strokes:
+            choice.set_options(names, value=min(state.stroke, len(strokes) - 1))
+
+    def changed(before: State, after: State) -> None:
+        if before.answer is not after.answer or before.stroke != after.stroke:
+            draw(after)
+
+    draw(session.state)
+    session.watch(changed)
+
+
+def _why(state: State, line: Headline) -> str:
+    """What is said of the motion that is shown; of one by hand the map says the rest."""
+    if state.steered is None:
+        return line.why
+    strokes = state.answer.strokes if state.answer else ()
+    return f"the hole is drilled in {len(strokes)} strokes: one by hand cannot be kept" if strokes else ""
 
 
 def _headline(state: State, job: Job) -> Headline:

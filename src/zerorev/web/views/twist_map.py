@@ -106,6 +106,7 @@ class _TwistMap:
         """The state is another: show what of it is."""
         other_hole, other_answer = before.hole is not after.hole, before.answer is not after.answer
         steered_elsewhere = before.steered is not after.steered and after.steered is not self.passed
+        other_answer |= before.stroke != after.stroke
         if not (other_hole or other_answer or steered_elsewhere or before.job is not after.job):
             return
         self.let_pending_go()
