@@ -10,7 +10,8 @@ import pytest
 from hypothesis import settings
 
 from oracles.published import POSITIONS, Position
-from zerorev.files.io import read_robot, read_tool, robot_names
+from robots import TRIED
+from zerorev.files.io import read_robot, read_tool
 
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:  # started in the background: what tests start would inherit it
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -73,9 +74,9 @@ def position(request) -> Position:
     return request.param
 
 
-@pytest.fixture(params=robot_names(), scope="session")
+@pytest.fixture(params=TRIED, scope="session")
 def any_robot(request):
-    """Each robot that ships."""
+    """Robots of each maker."""
     return read_robot(request.param)
 
 

@@ -10,7 +10,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from oracles import arm as twin
-from zerorev.files.io import read_robot, read_tool, robot_names
+from robots import TRIED
+from zerorev.files.io import read_robot, read_tool
 from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
@@ -22,7 +23,7 @@ from zerorev.motion.evaluation import evaluate
 from zerorev.motion.joint_path import joints_along, sample_distances
 
 TOOL = read_tool("thesis_drill")
-ROBOTS = {name: read_robot(name) for name in robot_names()}
+ROBOTS = {name: read_robot(name) for name in TRIED}
 WITHOUT_LATERAL_OFFSET = [name for name, robot in ROBOTS.items() if robot.arm.b == 0]
 NO_LIMITS = JointLimits(np.full(6, -20.0), np.full(6, 20.0), np.ones(6))
 

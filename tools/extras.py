@@ -23,6 +23,7 @@ FOR_USERS = {
     "view": "the app (`view`) and `replay`; includes `certify`, `figures` and `maps`",
     "methods": "the methods of pymoo and cma in `methods`",
     "cad": "holes and parts from CAD: STEP, DXF, STL",
+    "xacro": "`robots import` of xacro files",
     "report": "`plan` and `check --report`, `reproduce`: plan or thesis as one page; includes `figures` and `maps`",
 }
 HEAD = """\

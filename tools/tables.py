@@ -17,7 +17,6 @@ from zerorev.files.stated_forms import default_of
 from zerorev.model.measures import CRITERIA
 from zerorev.model.settings import Settings
 from zerorev.model.stated import Choice, Stated, Weighed, stated
-from zerorev.report.words.tables import wrist_reach
 
 ROOT = Path(__file__).parents[1]
 PAGES, HOUSE = ROOT / "docs", ROOT / "src" / "zerorev"
@@ -64,7 +63,17 @@ def criteria_table() -> str:
 def robots_table() -> str:
     """The robots that ship, and how their controllers count."""
     return _table(
-        ("name", "robot", "reach of the wrist", "J3 on the pendant", "its base lies higher by", "pulses"), _robots()
+        (
+            "name",
+            "robot",
+            "reach of the wrist",
+            "load",
+            "second source",
+            "J3 on the pendant",
+            "its base lies higher by",
+            "pulses",
+        ),
+        _robots(),
     )
 
 
@@ -74,7 +83,9 @@ def _robots() -> Iterator[tuple[str, ...]]:
         yield (
             f"`{robot.name}`",
             f"{robot.manufacturer} {robot.model}",
-            f"{wrist_reach(robot) * 1e3:.0f} mm",
+            f"{robot.wrist_reach * 1e3:.0f} mm",
+            f"{robot.rated_load:g} kg" if robot.rated_load is not None else "",
+            "✓" if any("agrees" in line for line in robot.second_sources) else "",
             "against the ground" if robot.display.j3_less_j2 else "",
             f"{height:g} mm" if height else "",
             "known" if robot.pulses_per_deg else "",

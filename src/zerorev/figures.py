@@ -11,6 +11,7 @@ from importlib.util import find_spec
 if find_spec("matplotlib") is None:
     raise ImportError("zerorev.figures needs matplotlib, which is not installed: pip install 'zerorev[figures]'")
 
+from zerorev.report.figures.catalogue import robot_catalogue
 from zerorev.report.figures.joints import joint_angles
 from zerorev.report.figures.map_difference import map_difference
 from zerorev.report.figures.offset import tool_offset
@@ -36,6 +37,7 @@ __all__ = [
     "map_views",
     "parameter_slices",
     "placement_map",
+    "robot_catalogue",
     "study_gains",
     "tip_deviation",
     "tool_offset",

@@ -113,7 +113,7 @@ def test_a_robot_description_as_a_robot(capsys, tmp_path):
         text = (PRACTICE / "c23_feed/ms.yaml").read_text(encoding="utf-8")
         (tmp_path / "job.yaml").write_text(text.replace("kuka_kr6_r700_2", name))
         said = refused(capsys, "plan", tmp_path / "job.yaml")
-        assert "is a robot description (URDF), from which no robot is read" in said
+        assert "is a robot description (URDF), not a robot file" in said
 
 
 def test_meshes_in_the_package_of_a_description(tmp_path):

@@ -11,9 +11,10 @@ import pytest
 import yaml
 
 from oracles.descriptions import CHAINS, TABLES
+from robots import TRIED
 from zerorev.errors import InputError
 from zerorev.files.conversion import robot_data, robot_from
-from zerorev.files.io import read_job, read_robot, robot_names
+from zerorev.files.io import read_job, read_robot
 from zerorev.files.job_data import job_files
 from zerorev.files.robot_schema import RobotForm
 from zerorev.model.robot import Display
@@ -21,7 +22,7 @@ from zerorev.motion.kinematics import forward
 
 ROOT = Path(__file__).parents[2]
 KEYS = {"display", "pulses_per_deg", "base_in_root"}
-FANUC, YASKAWA, ABB = ([name for name in robot_names() if name.startswith(maker)] for maker in ("fan", "yas", "abb"))
+FANUC, YASKAWA, ABB = ([name for name in TRIED if name.startswith(maker)] for maker in ("fan", "yas", "abb"))
 ALL = {
     "display": {"j3_less_j2": True},
     "pulses_per_deg": [1000.0, -2000.5, 1592.888923, 1.0, -1.0, 454.754161],
@@ -195,7 +196,7 @@ def test_two_fanuc_three_yaskawa_and_three_abb_ship():
         assert robot.display == Display(j3_less_j2=True)
     for robot in map(read_robot, FANUC + YASKAWA):
         assert robot.T_root_base[2, 3] == pytest.approx(robot.arm.c1)  # both count from the height of axis 2
-    for robot in map(read_robot, robot_names()):
+    for robot in map(read_robot, TRIED):
         assert {key for key in KEYS if key in robot_data(robot)} <= robot.sources.keys()
 
 

@@ -111,7 +111,7 @@ class TestInverse:
         branches, found = kinematics.inverse(any_robot, T).reshape(-1, 2, 6), np.empty(6)
         for pair in branches[~np.isnan(branches).any(axis=(1, 2))]:
             for one, other in (pair, pair[::-1]):
-                other_flip(one, found)
+                other_flip(any_robot.arm, one, found)
                 np.testing.assert_allclose(found, other, atol=1e-14)
 
     def test_branches_stand_in_the_order_of_their_bits(self, any_robot):

@@ -11,9 +11,10 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robots import TRIED
 from zerorev import cli
 from zerorev.errors import InputError
-from zerorev.files.io import read_robot, robot_names
+from zerorev.files.io import read_robot
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.tool import Tool
@@ -26,7 +27,7 @@ from zerorev.search.deepest import Deepest, deepest_stroke
 
 OFF = Settings(min_rate=0.0)
 POSITION_1 = Hole("position_1", np.array([0.5, 0.3, 0.8]), np.array([1.0, 0.0, 0.0]), 0.05)
-ROBOTS = [read_robot(name) for name in robot_names()]
+ROBOTS = [read_robot(name) for name in TRIED]
 lengths, angles = st.floats(-0.3, 0.3), st.floats(-np.pi, np.pi)
 tools = st.builds(
     lambda p, q: Tool.from_mm_deg(tuple(1e3 * x for x in p), tuple(np.rad2deg(q))),

@@ -37,6 +37,7 @@ from zerorev.cli import (  # noqa: F401
     replay,
     reproduce,
     robots,
+    robots_import,
     share,
     simulate,
     view,

@@ -37,6 +37,7 @@ __all__ = [
     "numbers",
     "of_tool",
     "recordings_app",
+    "robots_app",
 ]  # fmt: skip
 
 FINE, FOUND, BAD_INPUT, BUG, INTERRUPTED, PIPE_CLOSED = 0, 1, 2, 70, 130, 141
@@ -75,6 +76,8 @@ app = App(
 
 map_app = App(name="map", default_parameter=Parameter(negative=(), show_default=False))
 app.command(map_app)
+robots_app = App(name="robots", default_parameter=Parameter(negative=(), show_default=False))
+app.command(robots_app)
 recordings_app = App(
     name="recordings",
     help="Recordings of runs on a real arm (KRC4 trace, RSI, CSV): read, align, measure and compare them.",

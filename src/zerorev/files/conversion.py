@@ -110,6 +110,8 @@ def robot_data(robot: Robot) -> dict[str, Any]:
         | _controller_data(robot)
     )
     words = {"name": robot.name, "manufacturer": robot.manufacturer, "model": robot.model}
+    if robot.payload is not None:
+        words |= data_of(robot, ("payload",))
     return words | numbers | {"sha256": _fingerprint(numbers)}
 
 

@@ -12,6 +12,8 @@ from zerorev.files.yaml_text import yaml_document
 
 __all__ = ["named_document", "shipped"]
 
+MOST_LISTED = 20  # names in a message
+
 
 def shipped(kind: str) -> list[str]:
     """The names of the robots or tools that ship with zerorev.
@@ -39,7 +41,8 @@ def named_document(name_or_path: str | Path, folder: str | Path | None, kind: st
         resource = resources.files("zerorev.files") / kind / f"{name}.yaml"
         return yaml_document(resource.read_text(encoding="utf-8"), f"{name}.yaml")
     meant = meant_name(name, there)
-    names = f"did you mean '{meant}'? else {', '.join(there)}" if meant else ", ".join(there)
+    listed = ", ".join(there) if len(there) <= MOST_LISTED else f"one of the {len(there)} that `zerorev {kind}` lists"
+    names = f"did you mean '{meant}'? else {listed}" if meant else listed
     if folder is None:
         raise InputError(f"'{name}' does not ship with zerorev", accepted=names)
     if "/" in name or "\\" in name or name.endswith((".yaml", ".yml", ".json", ".urdf", ".xacro")):

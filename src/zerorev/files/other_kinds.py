@@ -83,8 +83,8 @@ def refuse_robot_description(text: str, file: str) -> None:
         InputError: it is one.
     """
     if text.lstrip("\ufeff \t\r\n").startswith(("<?xml", "<robot")):
-        accepted = "a robot file (YAML) with geometry_mm and joints; zerorev view --urdf shows the meshes of a URDF"
-        raise InputError("is a robot description (URDF), from which no robot is read", where=file, accepted=accepted)
+        accepted = "a robot file (YAML); zerorev robots import makes one of it, zerorev view --urdf shows its meshes"
+        raise InputError("is a robot description (URDF), not a robot file", where=file, accepted=accepted)
 
 
 def meant_name(name: str, shipped: list[str]) -> str | None:

@@ -103,7 +103,7 @@ class BaseInRootForm(Form):
     )
 
 
-@keys_of(Robot, ("pulses_per_deg",))
+@keys_of(Robot, ("pulses_per_deg", "payload"))
 class RobotForm(Form):
     """The numbers of a robot."""
 

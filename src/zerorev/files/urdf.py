@@ -19,9 +19,10 @@ from zerorev.errors import InputError
 from zerorev.files.text import read_bytes
 from zerorev.model._arrays import Array, rotation_rpy, transform
 
-__all__ = ["Description", "Joint", "Visual", "read_urdf"]
+__all__ = ["Description", "Joint", "Visual", "joint_of", "named", "read_urdf", "urdf_root"]
 
 XACRO = "wiki/xacro}"  # of the tags of its own
+TURNING = ("revolute", "continuous")
 MOST_BYTES = 20 * 2**20
 MOST_PARTS = 1_000  # joints, links, materials, and what is seen of links, of each
 LONGEST_NAME = 1_000  # of a mesh
@@ -57,12 +58,20 @@ class Joint:
         child: link that it carries.
         pose: of the child in the parent where the joint is at 0, shape (4, 4), translation [m].
         axis: unit vector in the child's frame, shape (3,), or None for a joint that does not move.
+        name: of the joint.
+        kind: `fixed`, `revolute`, `continuous`, or what else a description may hold.
+        mimic: whether it follows another joint.
+        limits: lower and upper angle [rad] and greatest speed [rad/s], each None where the file does not state it.
     """
 
     parent: str
     child: str
     pose: Array
     axis: Array | None
+    name: str = ""
+    kind: str = "revolute"
+    mimic: bool = False
+    limits: tuple[float | None, float | None, float | None] = (None, None, None)
 
 
 @dataclass(frozen=True)
@@ -94,14 +103,14 @@ def read_urdf(path: str | Path) -> Description:
         InputError: not such a file, XML with a document type or entities, a mesh outside of the file's folder and of
             its package's, or other than six turning joints in one chain.
     """
-    root = _xml(Path(path))
+    root = urdf_root(Path(path))
     for tag in ("joint", "link", "material", "link/visual"):
         if len(root.findall(tag)) > MOST_PARTS:
             raise InputError(f"more than {MOST_PARTS:,} of {tag}", where=str(path), accepted=f"{MOST_PARTS:,} or less")
-    joints = [_joint(entry, str(path)) for entry in root.findall("joint")]
+    joints = [joint_of(entry, str(path)) for entry in root.findall("joint")]
     moving = [joint for joint in joints if joint.axis is not None]
     children = {joint.child for joint in joints}
-    links = [_named(entry, str(path)) for entry in root.findall("link")]
+    links = [named(entry, str(path)) for entry in root.findall("link")]
     bases = [link for link in links if link not in children]
     if len(bases) != 1:
         raise InputError(f"{len(bases)} root links", where=str(path), accepted="one")
@@ -122,21 +131,31 @@ def read_urdf(path: str | Path) -> Description:
         chain.insert(0, by_child[chain[0].parent])
     of_chain = {id(joint) for joint in chain}
     folder = Path(path).resolve().parent
-    colours = {_named(entry, str(path)): _rgb(entry) for entry in root.findall("material")}
+    colours = {named(entry, str(path)): _rgb(entry) for entry in root.findall("material")}
     visuals = {
-        _named(entry, str(path)): tuple(_visual(each, folder, colours, str(path)) for each in entry.findall("visual"))
+        named(entry, str(path)): tuple(_visual(each, folder, colours, str(path)) for each in entry.findall("visual"))
         for entry in root.findall("link")
     }
     fixed = tuple(joint for joint in joints if id(joint) not in of_chain)
     return Description(Path(path), bases[0], tuple(chain), fixed, visuals)
 
 
-def _xml(path: Path) -> Any:
+def urdf_root(path: Path, text: bytes | None = None) -> Any:
+    """The root element of a robot description.
+
+    Args:
+        path: the file.
+        text: what it holds, where that was made of it; else it is read.
+
+    Raises:
+        InputError: no such file, no XML, XML with a document type or entities, or of another kind.
+    """
     from defusedxml.common import DefusedXmlException
     from defusedxml.ElementTree import ParseError, fromstring
 
     try:
-        root = fromstring(read_bytes(path, "a URDF file", MOST_BYTES), forbid_dtd=True)
+        text = read_bytes(path, "a URDF file", MOST_BYTES) if text is None else text
+        root = fromstring(text, forbid_dtd=True)
     except DefusedXmlException:
         message = "holds a document type or entities, which are not read"
         raise InputError(message, where=str(path), accepted="plain XML") from None
@@ -152,14 +171,23 @@ def _xml(path: Path) -> Any:
     return root
 
 
-def _joint(entry: Any, where: str) -> Joint:
-    where = f"{where}, joint {entry.get('name')}"
+def joint_of(entry: Any, file: str, kinds: Sequence[str] = (*TURNING, "fixed")) -> Joint:
+    """A joint of a description.
+
+    Args:
+        entry: its XML element.
+        file: how messages name the file.
+        kinds: that may occur.
+
+    Raises:
+        InputError: of another kind, without its two links, or with numbers that are none.
+    """
+    where = f"{file}, joint {entry.get('name')}"
     kind = entry.get("type")
     parent, child = entry.find("parent"), entry.find("child")
-    if parent is None or child is None or kind not in ("revolute", "continuous", "fixed"):
-        raise InputError(
-            f"a joint of type '{kind}'", where=where, accepted="revolute, continuous or fixed, of two links"
-        )
+    if parent is None or child is None or kind not in kinds:
+        accepted = f"{', '.join(kinds[:-1])} or {kinds[-1]}, of two links"
+        raise InputError(f"a joint of type '{kind}'", where=where, accepted=accepted)
     axis = None
     if kind != "fixed":
         given = entry.find("axis")
@@ -171,7 +199,21 @@ def _joint(entry: Any, where: str) -> Joint:
     links = [end.get("link") for end in (parent, child)]
     if not all(links):
         raise InputError("an end that names no link", where=where, accepted='<parent link="…"/> and <child link="…"/>')
-    return Joint(str(links[0]), str(links[1]), _origin(entry, where), axis)
+    return Joint(
+        str(links[0]), str(links[1]), _origin(entry, where), axis, str(entry.get("name")), kind,
+        entry.find("mimic") is not None, _limits(entry, where),
+    )  # fmt: skip
+
+
+def _limits(entry: Any, where: str) -> tuple[float | None, float | None, float | None]:
+    """Lower, upper and velocity, as far as they are stated; a continuous joint has no ends."""
+    limit = entry.find("limit")
+    keys = ("velocity",) if entry.get("type") == "continuous" else ("lower", "upper", "velocity")
+    stated = {} if limit is None else {key: limit.get(key) for key in keys if limit.get(key) is not None}
+    lower, upper, speed = (
+        _numbers(stated[key], 1, where)[0] if key in stated else None for key in ("lower", "upper", "velocity")
+    )
+    return lower, upper, speed
 
 
 def _depth(joint: Joint, by_child: dict[str, Joint], where: str) -> int:
@@ -257,7 +299,16 @@ def _rgb(material: Any) -> str:
     return "#" + "".join(f"{round(255 * min(1.0, max(0.0, value))):02x}" for value in values)
 
 
-def _named(entry: Any, where: str) -> str:
+def named(entry: Any, where: str) -> str:
+    """The name of a link, a joint or a material.
+
+    Args:
+        entry: its XML element.
+        where: the file.
+
+    Raises:
+        InputError: it has none.
+    """
     name = entry.get("name")
     if not name:
         raise InputError(f"a {entry.tag} without a name", where=where, accepted="a name")

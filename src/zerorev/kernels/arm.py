@@ -5,8 +5,9 @@ Written from the cosines and sines of the joints, which come out of the inverse 
 is False, or a row of NaN.
 
 A *posture* is one of the four arm solutions, 2 * (wrist centre behind axis 1) + (elbow below the line shoulder-wrist);
-a *branch* is 2 * posture + (A5 < 0). "Below" is judged with the arm reaching forward, and mirrored for the arm that
-reaches back, so that it is the sense in which the elbow bends and stays what it is when the arm swings over its top.
+a *branch* is 2 * posture + (A5 < 0), A5 counted from the straight wrist. "Below" is judged with the arm reaching
+forward, and mirrored for the arm that reaches back, so that it is the sense in which the elbow bends and stays what it
+is when the arm swings over its top.
 """
 
 from __future__ import annotations
@@ -231,16 +232,21 @@ def controller_angles(arm, cs, negative, out):  # type: ignore[no-untyped-def]
 
 
 @lean
-def other_flip(angles, out):  # type: ignore[no-untyped-def]
+def other_flip(arm, angles, out):  # type: ignore[no-untyped-def]
     """The same pose with the wrist flipped: joints 4 and 6 turned by half a turn, joint 5 to the other side.
 
     Args:
+        arm: `ArmGeometry`.
         angles: controller angles within (-pi, pi], shape (6,).
         out: out, shape (6,), likewise.
     """
     for i in range(6):
         out[i] = angles[i]
-    out[4] = -angles[4]
+    out[4] = 2.0 * arm.sign[4] * arm.offset[4] - angles[4]
+    if out[4] > np.pi:
+        out[4] -= 2.0 * np.pi
+    elif out[4] <= -np.pi:
+        out[4] += 2.0 * np.pi
     for i in (3, 5):
         out[i] = angles[i] - np.pi if angles[i] > 0.0 else angles[i] + np.pi
 

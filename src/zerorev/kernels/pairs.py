@@ -273,7 +273,7 @@ def set_out(arm, plane, posture, psi_t, constraints, branches, cs, kappa, sense,
         sense[i] = 1.0 if theta_psi[i] > 0.0 else -1.0
     sense[4] *= flip_sign(arm, 2 * posture)
     controller_angles(arm, cs, False, principal[0])
-    other_flip(principal[0], principal[1])
+    other_flip(arm, principal[0], principal[1])
     for flip in range(2):
         choices[flip] = turn_choices(principal[flip], constraints) if branches[2 * posture + flip] else 0
     return choices[0] + choices[1] > 0

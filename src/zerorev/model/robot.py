@@ -14,7 +14,7 @@ from zerorev.model.body import Body
 from zerorev.model.dynamics import Dynamics
 from zerorev.model.stated import Number, Switch, with_attributes
 from zerorev.model.stated import Six as SixNumbers
-from zerorev.model.units import DEG, DEG_S, DEG_S2, MM
+from zerorev.model.units import DEG, DEG_S, DEG_S2, KG, MM
 
 __all__ = ["LENGTHS", "NIL_RATE", "ArmGeometry", "Display", "JointLimits", "Robot"]
 
@@ -98,6 +98,7 @@ class Robot:
         display: what the controller shows of the joints. Limits, rates and reversals are of the joints that turn.
         base_in_root: the base frame from which the controller counts, in the base frame of the arm: x, y, z [m] and
             roll, pitch, yaw [rad]; None where they are one.
+        payload: as the maker rates it; where what the links weigh is known, that says it instead (`rated_load`).
         bodies: solids on its links; empty: none is stated, and capsules about its own lines stand for it.
     """
 
@@ -121,6 +122,19 @@ class Robot:
     ] = None
     base_in_root: Six | None = None
     bodies: tuple[Body, ...] = ()
+    payload: Annotated[float | None, Number("the load that the maker rates it for", KG, above=0, none="not known")] = (
+        field(default=None, compare=False)
+    )
+
+    @property
+    def rated_load(self) -> float | None:
+        """The load that the maker rates the arm for [kg], or None: of the robot, or of what its links weigh."""
+        return self.payload if self.payload is not None or self.dynamics is None else self.dynamics.payload
+
+    @property
+    def wrist_reach(self) -> float:
+        """Greatest distance [m] of the wrist centre from axis 1: the arm stretched out level with the shoulder."""
+        return float(np.hypot(self.arm.a1 + self.reach, self.arm.b))
 
     @property
     def T_root_base(self) -> Array:
@@ -149,6 +163,14 @@ class Robot:
         if self.display.j3_less_j2:
             joints[..., 2] += joints[..., 1]
         return joints
+
+    def bend(self, joints: Array) -> Array:
+        """By how much joint 5 is bent from a straight wrist, as the controller counts it [rad], shape (...,).
+
+        Args:
+            joints: that turn [rad], shape (..., 6).
+        """
+        return np.asarray(joints[..., 4] - self.arm.sign[4] * self.arm.offset[4])
 
     def allowed(self, margin: float) -> JointLimits:
         """The joint limits with room kept at both ends; without any, the limits themselves.
@@ -204,12 +226,6 @@ class Robot:
         if any(abs(s) != 1 for s in arm.sign):
             raise InputError("a joint sign is neither 1 nor -1", where=f"robot {self.name}", accepted="1 or -1")
         offset = finite(arm.offset, (6,), f"robot {self.name}, offset")
-        if offset[4] != 0:
-            raise InputError(
-                "joint 5 has an offset, but its sign tells the branches apart",
-                where=f"robot {self.name}, offset",
-                accepted="0 for joint 5, so that it is straight at 0",
-            )
         # plain floats throughout: an int would be another type, and another compilation, to the kernels
         a1, a2, b, c1, c2, c3, c4 = map(float, lengths)
         object.__setattr__(self, "arm", ArmGeometry(a1, a2, b, c1, c2, c3, c4, six(arm.sign), six(offset)))

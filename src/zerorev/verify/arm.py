@@ -142,12 +142,13 @@ def branch_of(arm: ArmGeometry, joints: Array) -> int:
 
     Returns:
         4 with the wrist centre behind axis 1, + 2 with the elbow below the line from shoulder to wrist, + 1 with a
-        negative controller angle 5. Below means: the upper arm leans further to the side to which the arm reaches.
+        wrist that is bent to the negative side of joint 5, as the controller counts it. Below means: the upper arm
+        leans further to the side to which the arm reaches.
     """
     posture = posture_of(arm, joints)
-    angle_5 = np.angle(np.exp(1j * joints[4]))
+    bend = arm.sign[4] * np.sin(arm.sign[4] * joints[4] - arm.offset[4])
     behind, below = posture.reach < 0, posture.elbow * posture.reach > 0
-    return int(4 * behind + 2 * below + (angle_5 < 0))
+    return int(4 * behind + 2 * below + (bend < 0))
 
 
 def solve(arm: ArmGeometry, asked: Sums, posture: Posture, standoff: Array, psi: Array) -> Array:

@@ -123,7 +123,7 @@ class TestFindings:
 
 class TestRobots:
     def test_reach_of_the_thesis_robot(self, robot):
-        assert tables.wrist_reach(robot) == pytest.approx(0.7259, abs=1e-4)  # its data sheet: 726 mm
+        assert robot.wrist_reach == pytest.approx(0.7259, abs=1e-4)  # its data sheet: 726 mm
 
     def test_every_number_with_its_source(self):
         robot = read_robot("kuka_kr6_r700_2")

@@ -72,5 +72,5 @@ def rounded(program: Program, hole: HoleProgram) -> Rounded:
         float(tilt.max()),
         reversals,
         standing,
-        float(np.abs(np.vstack(paths)[:, 4]).min()),
+        float(np.abs(robot.bend(np.vstack(paths))).min()),
     )

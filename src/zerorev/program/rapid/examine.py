@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from zerorev.model.finding import Finding
+from zerorev.model.robot import Robot
 from zerorev.program.neutral import HoleProgram, Program
 from zerorev.program.rapid.controller import problems
 
@@ -20,7 +21,7 @@ def examine(program: Program) -> tuple[Finding, ...]:
     return (
         *(Finding("error", "controller", problem) for problem in problems(program)),
         *_corner(program),
-        *(finding for hole in program.holes for finding in _wrist(hole)),
+        *(finding for hole in program.holes for finding in _wrist(program.robot, hole)),
     )
 
 
@@ -45,10 +46,10 @@ def _corner(program: Program) -> Iterator[Finding]:
                 yield Finding("warning", "controller", message, hole.id)
 
 
-def _wrist(hole: HoleProgram) -> Iterator[Finding]:
+def _wrist(robot: Robot, hole: HoleProgram) -> Iterator[Finding]:
     """Straight moves with axes 4 and 6 nearly in line: the controller may slow down, or stop."""
     points = np.array([hole.start.joints, *(move.end.joints for move in hole.moves)])
-    least = float(np.abs(np.arcsin(np.sin(points[:, 4]))).min())
+    least = float(np.abs(np.arcsin(np.sin(robot.bend(points)))).min())
     if least < NEAR_SINGULAR:
         message = (
             f"axis 5 comes within {np.rad2deg(least):.2f} deg of the singularity of the wrist: a controller may run "

@@ -115,7 +115,7 @@ def _paces(program: Program) -> Iterator[Finding]:
 
 def _hole(program: Program, hole: HoleProgram) -> Iterator[Finding]:
     joints = np.stack([hole.start.joints, *(move.end.joints for move in hole.moves)])
-    if (least := float(np.abs(np.sin(joints[:, 4])).min())) < np.sin(STRAIGHT_WRIST):
+    if (least := float(np.abs(np.sin(program.robot.bend(joints))).min())) < np.sin(STRAIGHT_WRIST):
         message = (
             f"{program.robot.joint_names[4]} comes within {np.rad2deg(np.arcsin(least)):.2g} deg of a straight wrist, "
             "where straight moves are slowed, or stop with an alarm"

@@ -76,7 +76,7 @@ def configuration(robot: Robot, joints: Array) -> str:
         joints: that turn [rad], shape (6,).
     """
     branch, shown = branch_of(robot.arm, joints), np.rad2deg(robot.shown(joints))
-    wrist, elbow, shoulder = "FN"[int(shown[4] <= 0)], "UD"[branch // 2 % 2], "TB"[branch // 4]
+    wrist, elbow, shoulder = "FN"[branch % 2], "UD"[branch // 2 % 2], "TB"[branch // 4]
     return f"{wrist} {elbow} {shoulder}, {', '.join(str(_turns(angle)) for angle in shown[3:])}"
 
 

@@ -27,7 +27,6 @@ from zerorev.report.words.tables import (
     slowest,
     spins_cell,
     stroke_lines,
-    wrist_reach,
 )  # fmt: skip
 
 __all__ = [
@@ -200,7 +199,7 @@ def robot_facts(plan: Plan) -> list[Fact]:
     return [
         Fact("name", robot.name),
         Fact("maker and model", f"{robot.manufacturer} {robot.model}".strip() or "–"),
-        Fact("reach of the wrist", f"{wrist_reach(robot) * 1e3:.0f} mm"),
+        Fact("reach of the wrist", f"{robot.wrist_reach * 1e3:.0f} mm"),
         Fact("joint limits [deg]", "; ".join(ranges)),
         *(Fact(name, text) for name, text in controller_rows(robot)),
     ]

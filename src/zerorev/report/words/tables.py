@@ -200,17 +200,24 @@ def slowest(score: Score | None, settings: Settings) -> tuple[float, int] | None
 
 
 def robots_table(robots: Iterable[Robot]) -> Table:
-    """One row per robot: name, maker, model, reach of the wrist centre, joint limits."""
+    """One row per robot: name, maker, model, reach of the wrist centre, rated load, joint limits."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("name", "maker", "model"):
         table.add_column(Text(heading), no_wrap=True)
     table.add_column(Text("reach of the\nwrist [mm]"), justify="right")
+    table.add_column(Text("load\n[kg]"), justify="right")
     table.add_column(Text("joint limits [deg]"))
     for robot in robots:
         limits = np.rad2deg(np.array([robot.limits.lower, robot.limits.upper])).T
         ranges = "  ".join(f"{name} {_range(*pair)}" for name, pair in zip(robot.joint_names, limits, strict=True))
-        table.add_row(robot.name, robot.manufacturer, robot.model, f"{wrist_reach(robot) * 1e3:.0f}", ranges)
+        table.add_row(
+            robot.name, robot.manufacturer, robot.model, f"{robot.wrist_reach * 1e3:.0f}", _load(robot), ranges
+        )
     return table
+
+
+def _load(robot: Robot) -> str:
+    return "" if robot.rated_load is None else f"{robot.rated_load:g}"
 
 
 def robots_note(robots: Iterable[Robot]) -> Text | None:
@@ -222,16 +229,10 @@ def robots_note(robots: Iterable[Robot]) -> Text | None:
     return Text("\n".join(lines), style="dim") if lines else None
 
 
-def wrist_reach(robot: Robot) -> float:
-    """Greatest distance [m] of the wrist centre from axis 1: the arm stretched out at the height of the shoulder."""
-    arm = robot.arm
-    return float(np.hypot(arm.a1 + robot.reach, arm.b))
-
-
 def robot_sheet(robot: Robot) -> dict[str, Any]:
     """The robot as plain data: what a plan file holds of it, with sources and caveats."""
     return robot_data(robot) | {
-        "wrist_reach_mm": round(wrist_reach(robot) * 1e3, 6),
+        "wrist_reach_mm": round(robot.wrist_reach * 1e3, 6),
         "sources": dict(robot.sources),
         "second_sources": list(robot.second_sources),
         "caveats": list(robot.caveats),
@@ -245,7 +246,7 @@ def robot_heading(robot: Robot) -> Text:
     )
     return Text.assemble(
         (robot.name, "bold"), f"   {robot.manufacturer} {robot.model}\n\n", ("lengths [mm]   ", "bold"), lengths,
-        ("\nwrist reach    ", "bold"), f"{wrist_reach(robot) * 1e3:.0f} mm from axis 1",
+        ("\nwrist reach    ", "bold"), f"{robot.wrist_reach * 1e3:.0f} mm from axis 1",
         *(part for name, text in controller_rows(robot) for part in ((f"\n{name:<15}", "bold"), text)),
     )  # fmt: skip
 

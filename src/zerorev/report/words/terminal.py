@@ -29,6 +29,7 @@ __all__ = [
     "print_file",
     "print_json",
     "print_lines",
+    "print_plain",
     "progress",
     "rate_text",
     "replace_what_cannot_be_shown",
@@ -103,6 +104,11 @@ def print_json(data: Any) -> None:
     from zerorev.files.text import json_text
 
     sys.stdout.write(json_text(data))
+
+
+def print_plain(text: str) -> None:
+    """A text file's text as it stands, for machines: it was made visible where it was written."""
+    sys.stdout.write(text)
 
 
 def print_file(path: Path) -> None:
