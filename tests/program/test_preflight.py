@@ -251,3 +251,24 @@ def test_moves_shorter_than_two_cycles_of_a_controller(feed_mm_s, short, publish
         assert ("2 linear moves last" if short == 2 else "a linear move lasts") in found[0].message
         assert found[0].level == "warning"
         assert f"at {feed_mm_s} mm/s in the lead-in" in found[0].message
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize(("bends", "says"), [((-4.0,), "within 4 deg"), ((6.0,), ""), ((3.0, -20.0), "within 0 deg")])
+def test_a_wrist_that_is_nearly_straight_is_said_for_every_controller(bends, says, controller, published, plan_of):
+    """Of program points with these angles of joint 5; between two of them it passes 0."""
+    plan = plan_of(published(1))
+    program = build_program(plan)
+    (hole,) = program.holes
+    points = [np.array([0, -1.5, 1.5, 0, np.deg2rad(bend), 0]) for bend in bends]
+    moves = [replace(move, end=replace(move.end, joints=points[-1])) for move in hole.moves]
+    changed = replace(hole, start=replace(hole.start, joints=points[0]), moves=tuple(moves))
+    found = [
+        finding
+        for finding in preflight(replace(program, holes=(changed,)), plan, CONTROLLERS[controller])
+        if "straight wrist" in finding.message
+    ]
+    assert [(finding.level, finding.kind, finding.hole) for finding in found] == (
+        [("warning", "controller", hole.id)] if says else []
+    )
+    assert all(says in finding.message for finding in found)

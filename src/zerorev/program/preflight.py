@@ -21,6 +21,7 @@ __all__ = ["preflight"]
 
 ON_POSE = (1e-5, float(np.deg2rad(0.01)))  # [m], [rad] between a plan's joints and its poses
 ROUND_OFF = 1e-9
+STRAIGHT_WRIST = float(np.deg2rad(5.0))  # [rad] of joint 5
 # below these the decimals of a program no longer tell two points, a feed or a radius from none
 SHORTEST_MOVE, SLOWEST_FEED, SMALLEST_BLEND = 1e-6, 1e-6, 1e-7  # [m], [m/s], [m]
 
@@ -43,6 +44,7 @@ def preflight(program: Program, plan: Plan, controller: Controller) -> tuple[Fin
             *_speeds(plan, plans[hole.id], hole),
             *_turns(hole, usual),
             *_printable(hole),
+            *_wrist(plan.robot, hole),
         )
     ]
     return (*found, *notes(program))
@@ -108,6 +110,20 @@ def _turns(hole: HoleProgram, usual: float) -> tuple[Finding, ...]:
         message += "orientation speed allows it, or it will throttle the feed"
         found.append(Finding("warning", "turn_speed", message, hole.id))
     return tuple(found)
+
+
+def _wrist(robot: Robot, hole: HoleProgram) -> tuple[Finding, ...]:
+    """Points with axes 4 and 6 nearly in line, where a controller slows a straight move down, or stops."""
+    bend = robot.bend(np.array([hole.start.joints, *(move.end.joints for move in hole.moves)]))
+    bend = np.arcsin(np.sin(bend))
+    least = 0.0 if (bend > 0).any() and (bend < 0).any() else float(np.abs(bend).min())
+    if least >= STRAIGHT_WRIST:
+        return ()
+    message = (
+        f"{robot.joint_names[4]} comes within {np.rad2deg(least):.2g} deg of a straight wrist, where a controller may "
+        "slow a straight move down, or stop with an alarm: another posture, or the part elsewhere"
+    )
+    return (Finding("warning", "controller", message, hole.id),)
 
 
 def _printable(hole: HoleProgram) -> tuple[Finding, ...]:

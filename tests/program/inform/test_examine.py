@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from oracles.makers import position_plan
@@ -133,13 +132,6 @@ def test_slow_joints_are_named_before_the_certificate_fails(robot, plan_for):
     assert not all(good)
     one = [replace(plan, holes=(hole,)) for hole in plan.holes]
     assert [not found(each, "cannot be certified") for each in one] == good
-
-
-def test_a_wrist_near_straight(plan_for):
-    assert not found(plan_for("ma2010", 1), "wrist is straight")
-    plan = plan_for("ma2010", "panel", count=20, min_rate=0.0)
-    least = min(np.abs(np.rad2deg(hole.motion.joints[:, 4])).min() for hole in plan.holes)
-    assert bool(found(plan, "wrist is straight")) == (least < 5)
 
 
 def test_pulses_of_the_file(plan_for):

@@ -17,7 +17,6 @@ __all__ = ["examine"]
 
 FEED_OFF = 1e-3  # relative: a feed that is nearer is not worth a word
 FAR_OFF = 0.1  # relative: a feed beyond this is a warning
-NEAR_STRAIGHT = float(np.deg2rad(5.0))  # of joint 5: near its singularity a straight move slows down, or faults
 
 
 def examine(program: Program) -> tuple[Finding, ...]:
@@ -89,12 +88,4 @@ def _pulses(program: Program) -> Iterator[Finding]:
         [(each.standing & ~more, hole_id) for (each, _), (more, hole_id) in zip(holes, turned, strict=True)],
         "{which} moves by less than a pulse on a joint move at the corner and stands there: no reversal, but the "
         "program cannot be certified. A greater min_rate_deg_per_mm or blend_mm",
-    )
-    wrist = np.arange(6) == 4
-    least = np.rad2deg(min(each.wrist for each, _ in holes))
-    yield from listed_joints(
-        names,
-        [(wrist & (each.wrist < NEAR_STRAIGHT), hole.id) for each, hole in holes],
-        f"{{which}} comes to {least:.2g} deg of where the wrist is straight: the controller may slow a straight move "
-        "down there, or stop with an alarm. Another posture, or the part elsewhere",
     )

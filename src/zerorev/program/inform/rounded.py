@@ -29,7 +29,6 @@ class Rounded(NamedTuple):
         tilt: farthest that the drill is tilted there [rad].
         reversals: of each joint from the lead-in to the end of the stroke, shape (6,).
         standing: joints that stand on a joint move and move elsewhere, shape (6,).
-        wrist: least angle of joint 5, on which straight moves depend [rad].
     """
 
     off_axis: float
@@ -37,7 +36,6 @@ class Rounded(NamedTuple):
     tilt: float
     reversals: npt.NDArray[np.int64]
     standing: npt.NDArray[np.bool_]
-    wrist: float
 
 
 def rounded(program: Program, hole: HoleProgram) -> Rounded:
@@ -72,5 +70,4 @@ def rounded(program: Program, hole: HoleProgram) -> Rounded:
         float(tilt.max()),
         reversals,
         standing,
-        float(np.abs(robot.bend(np.vstack(paths))).min()),
     )

@@ -4,16 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from zerorev.model.finding import Finding
-from zerorev.model.robot import Robot
-from zerorev.program.neutral import HoleProgram, Program
+from zerorev.program.neutral import Program
 from zerorev.program.rapid.controller import problems
 
 __all__ = ["examine"]
-
-NEAR_SINGULAR = float(np.deg2rad(5.0))  # [rad] of axis 5
 
 
 def examine(program: Program) -> tuple[Finding, ...]:
@@ -21,7 +16,6 @@ def examine(program: Program) -> tuple[Finding, ...]:
     return (
         *(Finding("error", "controller", problem) for problem in problems(program)),
         *_corner(program),
-        *(finding for hole in program.holes for finding in _wrist(program.robot, hole)),
     )
 
 
@@ -44,15 +38,3 @@ def _corner(program: Program) -> Iterator[Finding]:
             elif hole.corner_move.blend == 0:
                 message = "the corner is an exact stop, at which all joints rest, for joint moves would leave the axis"
                 yield Finding("warning", "controller", message, hole.id)
-
-
-def _wrist(robot: Robot, hole: HoleProgram) -> Iterator[Finding]:
-    """Straight moves with axes 4 and 6 nearly in line: the controller may slow down, or stop."""
-    points = np.array([hole.start.joints, *(move.end.joints for move in hole.moves)])
-    least = float(np.abs(np.arcsin(np.sin(robot.bend(points)))).min())
-    if least < NEAR_SINGULAR:
-        message = (
-            f"axis 5 comes within {np.rad2deg(least):.2f} deg of the singularity of the wrist: a controller may run "
-            "a straight move slower there than its feed, or stop"
-        )
-        yield Finding("warning", "controller", message, hole.id)

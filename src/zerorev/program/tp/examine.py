@@ -21,7 +21,6 @@ FASTEST = 2.0  # [m/s]
 NOTICEABLE = 0.01  # share by which a feed may differ unsaid
 ROUNDED = float(np.deg2rad(0.5 * 10.0**-DECIMALS))  # [rad]
 NEAR_LIMIT = 5 * ROUNDED
-STRAIGHT_WRIST = float(np.deg2rad(5.0))  # [rad] of J5
 
 
 def examine(program: Program) -> tuple[Finding, ...]:
@@ -115,12 +114,6 @@ def _paces(program: Program) -> Iterator[Finding]:
 
 def _hole(program: Program, hole: HoleProgram) -> Iterator[Finding]:
     joints = np.stack([hole.start.joints, *(move.end.joints for move in hole.moves)])
-    if (least := float(np.abs(np.sin(program.robot.bend(joints))).min())) < np.sin(STRAIGHT_WRIST):
-        message = (
-            f"{program.robot.joint_names[4]} comes within {np.rad2deg(np.arcsin(least)):.2g} deg of a straight wrist, "
-            "where straight moves are slowed, or stop with an alarm"
-        )
-        yield Finding("warning", "controller", message, hole.id)
     limits = program.robot.limits
     room = np.minimum(joints - limits.lower, limits.upper - joints).min(axis=0)
     if (room < NEAR_LIMIT).any():
