@@ -138,3 +138,12 @@ class TestJointSpeeds:
         slower = plan_job(job(feed_mm_s={"retract": fits}))
         assert not [each for each in slower.holes[0].findings if each.kind == "joint_speed"]
         export(slower)
+
+    def test_a_tool_that_turns_fast_is_said_in_the_plan(self, job):
+        fast = plan_job(job(feed_mm_s={"retract": 2000})).holes[0]
+        profile = fast.motion.profile
+        slope = abs(np.diff(profile.psi) / np.diff(profile.standoff))[-1]
+        (said,) = [each for each in fast.findings if each.kind == "turn_speed"]
+        assert f"{np.rad2deg(slope) * 2:.0f} deg/s" in said.message
+        slow = plan_job(job(feed_mm_s={"retract": 20})).holes[0]
+        assert not [each for each in slow.findings if each.kind == "turn_speed"]

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from zerorev.model._arrays import Array
+from zerorev.model.corner import known_controller
 from zerorev.model.finding import Finding
 from zerorev.model.job import Settings
 from zerorev.model.plan import Baseline, Corner, HolePlan, Motion
@@ -23,7 +24,7 @@ from zerorev.planning.limit_findings import limit_findings
 from zerorev.planning.load_findings import load_findings
 from zerorev.planning.tool_turn import hole_turn
 from zerorev.planning.why_none import why_infeasible
-from zerorev.program.joint_speeds import pieces_of, too_fast
+from zerorev.program.joint_speeds import pieces_of, too_fast, turns_fast
 from zerorev.program.stroke_points import moves_of
 from zerorev.program.ways import Way
 from zerorev.search.rank import Candidate
@@ -146,7 +147,9 @@ def motion_findings(drilling: Drilling, settings: Settings, answer: HolePlan) ->
     found += load_findings(drilling, settings, answer)
     found += corner_findings(settings, answer)
     # export refuses it; here it is known while the feed can still be chosen
-    found += too_fast(drilling, answer.motion.branch, pieces_of(settings, answer.motion, answer.corner, way), "warning")
+    pieces = pieces_of(settings, answer.motion, answer.corner, way)
+    found += too_fast(drilling, answer.motion.branch, pieces, "warning")
+    found += turns_fast(hole.id, pieces, known_controller(settings.controller).turn_speed)
     found += countersink_findings(settings, answer)
     found += clearance_findings(drilling, settings, answer)
     found += [Finding("error", "verification", failure, hole.id) for failure in answer.verified.failures]

@@ -52,6 +52,7 @@ LATER: tuple[FindingKind, ...] = (
     "near_limit",
     "tool_turn",
     "joint_speed",
+    "turn_speed",
     "corner",
 )  # which files of an older version do not have
 

@@ -1,4 +1,4 @@
-"""Whether the joints can turn as fast as the feeds ask for."""
+"""Whether the joints, and the tool, can turn as fast as the feeds ask for."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from zerorev.motion.joint_path import outward_rates
 from zerorev.program.stroke_points import moves_of
 from zerorev.program.ways import Way
 
-__all__ = ["Piece", "pieces_of", "too_fast"]
+__all__ = ["Piece", "pieces_of", "too_fast", "turn_speed", "turns_fast"]
 
 SAMPLES = 401  # of a piece
 ROUND_OFF = 1e-9
@@ -87,6 +87,28 @@ def too_fast(drilling: Drilling, branch: int, pieces: Iterable[Piece], level: Le
         )
         for leg, (_, joint, rate, feed) in worst.items()
     )
+
+
+def turn_speed(pieces: Iterable[Piece]) -> float:
+    """Greatest speed at which the pieces turn the tool about the drill axis [rad/s]."""
+    return max(abs((each.end[1] - each.begin[1]) / (each.end[0] - each.begin[0])) * each.feed for each in pieces)
+
+
+def turns_fast(hole: str, pieces: Iterable[Piece], usual: float) -> tuple[Finding, ...]:
+    """A warning where the tool is turned faster than controllers usually turn it: they would throttle the feed.
+
+    Args:
+        hole: its id.
+        pieces: of the motion.
+        usual: up to which the controller turns a tool [rad/s].
+    """
+    if (speed := turn_speed(pieces)) <= usual:
+        return ()
+    message = (
+        f"the tool turns at {np.rad2deg(speed):.0f} deg/s: see that the controller's limit of the orientation speed "
+        "allows it, or it will throttle the feed"
+    )
+    return (Finding("warning", "turn_speed", message, hole),)
 
 
 def _floored(feed_mm_s: float) -> str:

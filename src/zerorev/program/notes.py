@@ -10,9 +10,20 @@ from zerorev.model._arrays import Array
 from zerorev.model.finding import Finding, FindingKind, Level
 from zerorev.model.job import Settings
 from zerorev.model.written import WrittenProgram
+from zerorev.program import joint_speeds
 from zerorev.program.neutral import HoleProgram, Move, Program
 
-__all__ = ["CornerDepth", "calls", "corner_depth", "notes", "only_numbered", "segments", "tool_turn", "turn_speed"]
+__all__ = [
+    "CornerDepth",
+    "calls",
+    "corner_depth",
+    "notes",
+    "only_numbered",
+    "pieces",
+    "segments",
+    "tool_turn",
+    "turn_speed",
+]
 
 NOTICEABLE = 1e-6  # [m] a depth below this is not worth a word
 TWO_CYCLES = 24e-3  # [s]: a controller interpolates every 12 ms, or faster
@@ -58,7 +69,15 @@ def segments(hole: HoleProgram) -> list[tuple[float, float, Move]]:
 
 def turn_speed(hole: HoleProgram) -> float:
     """Greatest speed at which the moves of a hole turn the tool about the drill axis [rad/s]."""
-    return max(abs(move.psi - psi) / abs(move.standoff - start) * move.feed for start, psi, move in segments(hole))
+    return joint_speeds.turn_speed(pieces(hole))
+
+
+def pieces(hole: HoleProgram) -> list[joint_speeds.Piece]:
+    """The linear moves of a hole with their feeds, in the twist plane."""
+    return [
+        joint_speeds.Piece(move.leg, (standoff, psi), (move.standoff, move.psi), move.feed)
+        for standoff, psi, move in segments(hole)
+    ]
 
 
 def notes(program: Program) -> tuple[Finding, ...]:

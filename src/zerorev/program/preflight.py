@@ -12,9 +12,9 @@ from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.kinematics import forward, tcp_pose
-from zerorev.program.joint_speeds import Piece, too_fast
+from zerorev.program.joint_speeds import too_fast, turns_fast
 from zerorev.program.neutral import HoleProgram, Program
-from zerorev.program.notes import notes, segments, tool_turn, turn_speed
+from zerorev.program.notes import notes, pieces, segments, tool_turn
 from zerorev.program.waypoints import GREATEST_TURN
 
 __all__ = ["preflight"]
@@ -41,8 +41,8 @@ def preflight(program: Program, plan: Plan, controller: Controller) -> tuple[Fin
         for hole in program.holes
         for finding in (
             *_joints(plan, plans[hole.id], program, hole),
-            *_speeds(plan, plans[hole.id], hole),
-            *_turns(hole, usual),
+            *_speeds(plan, plans[hole.id], hole, usual),
+            *_turns(hole),
             *_printable(hole),
             *_wrist(plan.robot, hole),
         )
@@ -85,16 +85,14 @@ def _beyond(robot: Robot, joints: Array, margin: float) -> npt.NDArray[np.bool_]
     return np.asarray(out.any(axis=0))
 
 
-def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram) -> tuple[Finding, ...]:
-    """Joint speeds at the job's feeds."""
+def _speeds(plan: Plan, hole_plan: HolePlan, hole: HoleProgram, usual: float) -> tuple[Finding, ...]:
+    """Joint speeds at the job's feeds, and how fast they turn the tool."""
     assert hole_plan.motion is not None
-    pieces = [
-        Piece(move.leg, (standoff, psi), (move.standoff, move.psi), move.feed) for standoff, psi, move in segments(hole)
-    ]
-    return too_fast(Drilling.of(plan, hole_plan.hole), hole_plan.motion.branch, pieces)
+    drilling, own = Drilling.of(plan, hole_plan.hole), pieces(hole)
+    return (*too_fast(drilling, hole_plan.motion.branch, own), *turns_fast(hole.id, own, usual))
 
 
-def _turns(hole: HoleProgram, usual: float) -> tuple[Finding, ...]:
+def _turns(hole: HoleProgram) -> tuple[Finding, ...]:
     """No move may turn the tool further than the short way round is certain, and each turns as its spin says."""
     found = []
     pose = hole.start.T_part_tcp
@@ -105,10 +103,6 @@ def _turns(hole: HoleProgram, usual: float) -> tuple[Finding, ...]:
             message += f"{np.rad2deg(by_pose):.2f} deg; at most {np.rad2deg(GREATEST_TURN):g} deg are allowed"
             found.append(Finding("error", "move_turn", message, hole.id))
         pose = move.end.T_part_tcp
-    if turn_speed(hole) > usual:
-        message = f"the tool turns at {np.rad2deg(turn_speed(hole)):.0f} deg/s: see that the controller's limit of the "
-        message += "orientation speed allows it, or it will throttle the feed"
-        found.append(Finding("warning", "turn_speed", message, hole.id))
     return tuple(found)
 
 
