@@ -79,7 +79,7 @@ def table() -> str:
 
 def _row(extra: str, words: str, found: dict[str, Distribution]) -> str:
     size = sum(_size(each) for each in found.values())
-    return f"| {extra or '(none)'} | {words} | {len(found)} | {round(size / 1e6)} |\n"
+    return f"| {extra or '(none)'} | {words} | {len(found)} | {max(1, round(size / 1e6))} |\n"
 
 
 def _size(found: Distribution) -> int:

@@ -53,6 +53,7 @@ GROUPS = {
     "A hole of a plan": ("joint_angles", "twist_plane", "critical_rates"),
     "A study of possible arms": ("tip_deviation", "drive_torques", "study_gains", "drilled_holes"),
     "Where a part or a tool should stand": ("placement_map", "tool_offset"),
+    "The robots that ship": ("robot_catalogue",),
     "A workspace map": ("map_planes", "map_surface", "map_views", "map_cell", "map_rose", "map_difference"),
     "The method of the thesis": ("parameter_slices", "zero_volume", "comparison_boxes"),
 }
@@ -170,6 +171,7 @@ DRAWN: dict[str, Callable[[], Figure]] = {
     "drilled_holes": lambda: figures.drilled_holes(_study()),
     "placement_map": _placement,
     "tool_offset": _tool_offset,
+    "robot_catalogue": lambda: figures.robot_catalogue([zr.read_robot(name) for name in zr.robot_names()]),
     "map_planes": lambda: figures.map_planes(_map()),
     "map_surface": lambda: figures.map_surface(_map()),
     "map_views": lambda: figures.map_views(_map()),

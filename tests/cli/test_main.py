@@ -131,7 +131,7 @@ class TestPlan:
     @pytest.mark.parametrize(
         ("changes", "parts"),
         [
-            ({"robot": "kuka_kr7"}, ("kuka_kr7", "kuka_kr6_r700_2")),
+            ({"robot": "kuka_kr7"}, ("kuka_kr7", "kuka_kr7_r900_3")),
             ({"holes": [GIVEN | {"depth_mm": "deep"}]}, ("depth_mm", "deep")),
             ({"holes": [GIVEN | {"target_mm": [float("nan"), 0, 0]}]}, ("target_mm",)),
             ({"holes": [GIVEN | {"depth_mm": float("inf")}]}, ("depth_mm",)),
@@ -419,7 +419,7 @@ class TestRobots:
 
     def test_unknown(self, capsys):
         assert main(["robots", "r2d2"]) == cli.BAD_INPUT
-        one_message(capsys, "r2d2", "yaskawa_gp8")
+        one_message(capsys, "r2d2", "one of the 126 that `zerorev robots` lists")
 
 
 @pytest.mark.parametrize(

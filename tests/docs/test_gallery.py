@@ -34,7 +34,7 @@ def test_every_figure_is_explained_on_the_built_page(site):
     built = (site / "reference/gallery.html").read_text(encoding="utf-8")
     assert [name for name in figures.__all__ if f'id="zerorev.figures.{name}"' not in built] == []
     explained = re.findall(r"to draw (?:the strokes at one angle )?into", built)
-    assert len(explained) == 8  # the argument of those that have one axes
+    assert len(explained) == 9  # the argument of those that have one axes
 
 
 QUICK = {
@@ -46,6 +46,7 @@ QUICK = {
     "map_views",
     "map_cell",
     "zero_volume",
+    "robot_catalogue",
 }
 
 

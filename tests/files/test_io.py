@@ -169,7 +169,10 @@ def test_a_job_from_a_mapping_is_the_job_of_the_file(tmp_path: Path) -> None:
 
 # what is changed in JOB, and what the message must say
 BAD_JOBS: dict[str, tuple[str, str, list[str]]] = {
-    "unknown robot": ("kuka_kr6_r700_2", "kuka_kr9", ["line 1", "unknown robot 'kuka_kr9'", "yaskawa_gp8", "path"]),
+    "unknown robot": (
+        "kuka_kr6_r700_2", "kuka_kr9",
+        ["line 1", "unknown robot 'kuka_kr9'", "did you mean 'kuka_", "zerorev robots", "path"],
+    ),
     "robot file missing": ("kuka_kr6_r700_2", "my/kr.yaml", ["line 1", "my/kr.yaml", "no such file", "robot file"]),
     "robot file is a tool": ("kuka_kr6_r700_2", "tool.yaml", ["tool.yaml", "zerorev.tool/1", "zerorev.robot/1"]),
     "tool of another type": ("thesis_drill", "5", ["line 2, tool", "5", "tcp_mm and rpy_deg"]),

@@ -67,6 +67,7 @@ def answers(published, robot, tool, positions):
         "map_views": (workspace,),
         "parameter_slices": ({"after extents": parameter_map(robot, tool, hole, size=6, psi_target=[0.0])},),
         "placement_map": (job, placed),
+        "robot_catalogue": ([robot, *map(zr.read_robot, ("yaskawa_gp8", "staubli_tx2_90l"))],),
         "study_gains": ((studied,),),
         "tip_deviation": (studied,),
         "tool_offset": (job, curve, least),
@@ -96,7 +97,15 @@ def test_the_names_are_these_and_all_are_documented(answers):
 
 
 def test_figures_of_one_axes_are_these():
-    assert set(AMONG_OTHERS) == {"critical_rates", "map_rose", "study_gains", "tool_offset", "twist_plane", *IN_3D}
+    assert set(AMONG_OTHERS) == {
+        "critical_rates",
+        "map_rose",
+        "robot_catalogue",
+        "study_gains",
+        "tool_offset",
+        "twist_plane",
+        *IN_3D,
+    }
 
 
 @pytest.mark.parametrize("name", AMONG_OTHERS)
