@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.kernels import solids
-from zerorev.kernels.clearance import SPANNED, Arms, Desk, apart_at, desk
+from zerorev.kernels.bodies import SPANNED, Arms, Desk, apart_at, desk
 from zerorev.kernels.solids import Solids
 from zerorev.model._arrays import Array
 from zerorev.model.arm_bodies import Pair, bodies_of, pairs_of
@@ -138,6 +138,8 @@ def _made(asked: _Asked) -> Setting:
         frames=np.ascontiguousarray(frames),
         pairs=np.array([_numbers(pair, len(bodies)) for pair in pairs], dtype=np.int64).reshape(-1, 2),
         least=np.array([pair.least for pair in pairs]),
+        balls=np.array([_ball(shape) for _, shape in own]),
+        spanned=np.array([2 if isinstance(shape, Capsule) else SPANNED for shape in shapes]),
         reach=reach,
         around=around,
         lever=np.hypot(in_tcp[..., 0], in_tcp[..., 1]).max(axis=1),
@@ -178,10 +180,20 @@ def _own_frame(shape: Shape) -> tuple[Array, Shape]:
     return T, replace(shape, ends=ends)
 
 
+def _ball(shape: Shape) -> Array:
+    """A ball about a shape in its own frame: centre and radius [m], shape (4,)."""
+    if isinstance(shape, Mesh):
+        middle = (shape.vertices.min(axis=0) + shape.vertices.max(axis=0)) / 2
+        return np.append(middle, np.linalg.norm(shape.vertices - middle, axis=1).max())
+    half = shape.size / 2 if isinstance(shape, Box) else shape.ends[1] - shape.ends.mean(axis=0)
+    middle = np.zeros(3) if isinstance(shape, Box) else shape.ends.mean(axis=0)
+    return np.append(middle, np.linalg.norm(half) + (0.0 if isinstance(shape, Box) else shape.radius))
+
+
 def _spanned(T: Array, shape: Shape) -> Array:
     """Points whose hull a shape lies in, but for its radius, in the link frame [m], shape (SPANNED, 3)."""
     if isinstance(shape, Capsule):
-        points = np.repeat(shape.ends, SPANNED // 2, axis=0)
+        points = np.tile(shape.ends, (SPANNED // 2, 1))
     elif isinstance(shape, Box):
         points = EDGES * shape.size
     else:
@@ -230,7 +242,7 @@ def _reach(robot: Robot, link: npt.NDArray[np.int64], points: Array) -> tuple[Ar
 def _solids(shapes: list[Shape]) -> Solids:
     """Trees of all of them."""
     trees = [_tree(shape) for shape in shapes]
-    boxes, links, first, radius, points, root = [], [], [np.zeros(1, dtype=np.int64)], [], [], []
+    boxes, links, first, radius, points, root, thick = [], [], [np.zeros(1, dtype=np.int64)], [], [], [], []
     nodes = pieces = spread = 0
     for tree in trees:
         own = tree.links.copy()
@@ -241,10 +253,11 @@ def _solids(shapes: list[Shape]) -> Solids:
         first.append(tree.first[1:] + spread)
         radius.append(tree.radius)
         points.append(tree.points)
+        thick.append(tree.thick)
         nodes, pieces, spread = nodes + len(own), pieces + len(tree.radius), spread + len(tree.points)
     return Solids(
         np.concatenate(boxes), np.concatenate(links), np.array(root, dtype=np.int64), np.concatenate(first),
-        np.concatenate(radius), np.concatenate(points),
+        np.concatenate(radius), np.concatenate(points), np.concatenate(thick),
     )  # fmt: skip
 
 
@@ -258,11 +271,11 @@ def _tree(shape: Shape) -> Solids:
     else:
         corners, thick = shape.ends[None], shape.radius
     count, spanned, _ = corners.shape
-    lows, highs = corners.min(axis=1) - thick, corners.max(axis=1) + thick
+    lows, highs = corners.min(axis=1), corners.max(axis=1)
     order = np.arange(count)
     boxes, links = np.empty((2 * count, 6)), np.empty((2 * count, 2), dtype=np.int64)
     used = solids.build((lows + highs) / 2, lows, highs, order, boxes, links)
     return Solids(
         boxes[:used].copy(), links[:used].copy(), np.zeros(1, dtype=np.int64), spanned * np.arange(count + 1),
-        np.full(count, thick), np.ascontiguousarray(corners[order].reshape(-1, 3)),
+        np.full(count, thick), np.ascontiguousarray(corners[order].reshape(-1, 3)), np.array([thick]),
     )  # fmt: skip

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.collision.arms import Setting
+from zerorev.kernels import bodies
 from zerorev.kernels import clearance as kernels
 from zerorev.kernels.arm import flip_sign
 from zerorev.kernels.field import rates
@@ -43,6 +44,7 @@ SAMPLES = 65  # of a line, to see where a joint turns round
 BISECTIONS = 40
 BLEND_PARTS = 8
 MOST_PIECES = 100_000  # of a path, to prove that it keeps clear
+MOST_OF_A_LEG = 1_000  # while legs are searched for: some 10 um are then kept to an obstacle along 10 mm
 NO_PLANE = TwistPlane((0.0,) * 3, (0.0,) * 9, (0.0,) * 9, (0.0,) * 3)  # of moves of all axes
 Mask = npt.NDArray[np.bool_]
 
@@ -164,7 +166,9 @@ def moves(joints: Array) -> Iterator[Path]:
         yield Path(NO_PLANE, -1, ends)
 
 
-def legs_lack(setting: Setting, drilling: Drilling, branch: int, psi_t: Array, slope: Array) -> Array:
+def legs_lack(
+    setting: Setting, drilling: Drilling, branch: int, psi_t: Array, slope: Array, most: int = MOST_OF_A_LEG
+) -> Array:
     """By how much straight legs on which no joint turns round lack the clearance [m], shape (n,); 0: they keep it.
 
     Args:
@@ -173,11 +177,12 @@ def legs_lack(setting: Setting, drilling: Drilling, branch: int, psi_t: Array, s
         branch: 0..7.
         psi_t: spins at the target [rad], shape (n,).
         slope: twist rates [rad/m], shape (n,).
+        most: pieces of a leg that are examined before it is given up.
     """
     out = np.empty(psi_t.size)
     kernels.legs_keep(
         drilling.robot.arm, drilling.plane, branch, drilling.hole.depth, np.ascontiguousarray(psi_t),
-        np.ascontiguousarray(slope), setting.arms, setting.drilled, setting.lever_w, setting.desk(), out,
+        np.ascontiguousarray(slope), setting.arms, setting.drilled, most, setting.lever_w, setting.desk(), out,
     )  # fmt: skip
     return out
 
@@ -193,7 +198,7 @@ def poses_keep(setting: Setting, drilling: Drilling, branch: int, standoff: Arra
         psi: [rad], shape (n,).
     """
     out = np.empty(standoff.size, dtype=np.bool_)
-    _ask(kernels.poses_keep, setting, drilling, branch, standoff, psi, out)
+    _ask(bodies.poses_keep, setting, drilling, branch, standoff, psi, out)
     return out
 
 
@@ -208,7 +213,7 @@ def poses_apart(setting: Setting, drilling: Drilling, branch: int, standoff: Arr
         psi: [rad], shape (n,).
     """
     out = np.empty(standoff.size)
-    _ask(kernels.poses_apart, setting, drilling, branch, standoff, psi, out)
+    _ask(bodies.poses_apart, setting, drilling, branch, standoff, psi, out)
     return out
 
 
@@ -298,8 +303,8 @@ def _standoff(path: Path, share: float) -> float | None:
 def _points(setting: Setting, robot: Robot, path: Path, share: float, pair: int, points: Array) -> Points:
     """Points of the frame of a pair's second solid in the base frame."""
     desk = setting.desk()
-    kernels.pose_of(robot.arm, path.plane, path.branch, path.ends, share, desk)
-    kernels.apart_at(setting.arms, pair, np.inf, desk)
+    bodies.pose_of(robot.arm, path.plane, path.branch, path.ends, share, desk)
+    bodies.apart_at(setting.arms, pair, np.inf, desk)
     T = desk.placed[setting.arms.pairs[pair, 1]]
     one, other = points @ T[:9].reshape(3, 3).T + T[9:]
     return Points(one, other)

@@ -29,12 +29,13 @@ class Solids(NamedTuple):
     """Some solids, each with a tree of its own; a NamedTuple, so that kernels take it whole.
 
     Attributes:
-        boxes: least and greatest coordinates of each node of the trees [m], shape (M, 6).
+        boxes: least and greatest coordinates of each node of the trees, without the radii [m], shape (M, 6).
         links: of each node the first child and 0 (the other one follows it), or the first piece and how many, (M, 2).
         root: node of each solid, shape (S,).
         first: first point of each piece, and behind the last one, shape (P + 1,).
         radius: of each piece [m], shape (P,).
         points: [m], shape (N, 3).
+        thick: the greatest radius of each solid [m], shape (S,).
     """
 
     boxes: Array
@@ -43,6 +44,7 @@ class Solids(NamedTuple):
     first: Whole
     radius: Array
     points: Array
+    thick: Array
 
 
 class Room(NamedTuple):
@@ -186,6 +188,13 @@ def between(one, solid, T, other, obstacle, beyond, room, hint):  # type: ignore
     """
     best = beyond
     a0 = a1 = a2 = b0 = b1 = b2 = 0.0
+    pairs, bounds = room.pairs, room.bounds
+    pairs[0, 0], pairs[0, 1] = one.root[solid], other.root[obstacle]
+    # boxes are those of lines and hulls: about a thick line a box would reach out at its edges
+    thick = one.thick[solid] + other.thick[obstacle]
+    bounds[0] = _between_boxes(one.boxes, pairs[0, 0], T, other.boxes, pairs[0, 1]) - thick
+    if bounds[0] >= beyond:
+        return beyond
     if hint[0] >= 0:
         found = _pieces(one, hint[0], T, other, hint[1], best, room)
         if found < best:
@@ -193,9 +202,6 @@ def between(one, solid, T, other, obstacle, beyond, room, hint):  # type: ignore
             a0, a1, a2, b0, b1, b2 = (
                 room.A[4, 0], room.A[4, 1], room.A[4, 2], room.A[5, 0], room.A[5, 1], room.A[5, 2],
             )  # fmt: skip
-    pairs, bounds = room.pairs, room.bounds
-    pairs[0, 0], pairs[0, 1] = one.root[solid], other.root[obstacle]
-    bounds[0] = _between_boxes(one.boxes, pairs[0, 0], T, other.boxes, pairs[0, 1])
     top = 1
     while top > 0:
         top -= 1
@@ -219,8 +225,8 @@ def between(one, solid, T, other, obstacle, beyond, room, hint):  # type: ignore
         child = one.links[n, 0] if open_one else other.links[m, 0]
         n1, m1 = (child, m) if open_one else (n, child)
         n2, m2 = (child + 1, m) if open_one else (n, child + 1)
-        first = _between_boxes(one.boxes, n1, T, other.boxes, m1)
-        second = _between_boxes(one.boxes, n2, T, other.boxes, m2)
+        first = _between_boxes(one.boxes, n1, T, other.boxes, m1) - thick
+        second = _between_boxes(one.boxes, n2, T, other.boxes, m2) - thick
         if first < second:  # the nearer one is opened next
             n1, n2, m1, m2, first, second = n2, n1, m2, m1, second, first
         if first < best:

@@ -47,7 +47,12 @@ class Criterion(Figure):
 
     def __call__(self, motion: Measures[V]) -> V:
         """Cost of the motion, or of each of many."""
-        share: V = getattr(motion, self.name) / self.scale
+        figure: V = getattr(motion, self.name)
+        return self.cost_of(figure)
+
+    def cost_of(self, figure: V) -> V:
+        """Cost of a figure, or of each of many."""
+        share = figure / self.scale
         return 1 - share if self.more_is_better else share
 
 

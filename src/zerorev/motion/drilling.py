@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.kernels.arm import flip_sign
+from zerorev.kernels.arm import angles_along, flip_sign
 from zerorev.kernels.dynamics import Bodies
 from zerorev.kernels.field import rates
 from zerorev.kernels.layout import TwistPlane
@@ -95,6 +95,15 @@ class Drilling:
     def angles(self, standoff: npt.ArrayLike, psi: npt.ArrayLike) -> Array:
         """Controller angles [rad] at points (...,) of the twist plane on all branches, shape (..., 8, 6)."""
         return inverse(self.robot, tcp_pose(self.hole, standoff, psi) @ np.linalg.inv(self.tool.T_flange_tcp))
+
+    def angles_on(self, branch: int, standoff: npt.ArrayLike, psi: npt.ArrayLike) -> Array:
+        """The same on one branch, 0..7, shape (..., 6)."""
+        s, p = np.broadcast_arrays(np.asarray(standoff, dtype=float), psi)
+        out = np.empty((s.size, 6))
+        angles_along(
+            self.robot.arm, self.plane, np.ascontiguousarray(s).ravel(), np.ascontiguousarray(p).ravel(), branch, out
+        )
+        return out.reshape(*s.shape, 6)
 
     def deep(self, depth: float) -> Drilling:
         """The same hole at another depth [m]; no other hole has the same twist plane."""

@@ -11,17 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from zerorev.collision.arms import Setting, setting_of
 from zerorev.collision.motions import hit_of
-from zerorev.collision.near import Nearest, legs_lack
+from zerorev.collision.near import MOST_OF_A_LEG, Nearest, legs_lack
 from zerorev.model._arrays import Array
+from zerorev.model.measures import CRITERIA
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
-from zerorev.search.leg_pairs import Counts, Point, Sides
+from zerorev.search.leg_pairs import FINE_NODES, Counts, Point, Sides
 from zerorev.search.problem import Problem
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.survey import survey
@@ -32,6 +33,8 @@ __all__ = ["Cleared", "clear_of", "keeps_clear"]
 FINALISTS = 4  # points that are zoomed in on finely, at most
 WORTH_A_ZOOM = 0.1  # relative: a point of the grid this much above the best one may still lie below it
 SAME = 1e-3  # relative: a point this much above the best one is not finished, once that is
+FIRST_SPINS = 32  # of all postures, that are surveyed before more are
+PIECES = 300  # of a leg, that are examined until the best points are zoomed in on finely
 MOST_TRIED = 600  # motions of the grid with reversals that are tried
 SEEDS = 3  # of those that keep clear, that are improved
 
@@ -84,14 +87,42 @@ class _ClearLegs(WeightedLegs):
     """Pairs of legs that keep clear, too."""
 
     setting: Setting
+    bisections: ClassVar[tuple[int, int]] = (8, 8)  # the windows shrink, and each leg costs
 
-    def judged(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> tuple[Array, Array]:
-        """As `LegPairs.judged`; a leg that keeps all else but does not keep clear lacks by that."""
-        spare, margin = super().judged(sides, row, slope, least, nodes)
-        able = np.flatnonzero(spare >= 0)
-        lack = legs_lack(self.setting, self.drilling, sides.branch, sides.psi_t[row[able]], slope[able])
+    def slack(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> Array:
+        """As `LegPairs.slack`; a leg that keeps all else but does not keep clear lacks by that."""
+        spare = super().slack(sides, row, slope, least, nodes)
+        able, most = np.flatnonzero(spare >= 0), MOST_OF_A_LEG if nodes == FINE_NODES else PIECES
+        lack = legs_lack(self.setting, self.drilling, sides.branch, sides.psi_t[row[able]], slope[able], most)
         spare[able] = np.where(lack > 0, -lack, spare[able])
-        return spare, margin
+        return spare
+
+    def survey(self) -> list[Point]:
+        """As `WeightedLegs.survey`, the spins with the best free pairs first, until no other is worth a zoom.
+
+        No pair is better among obstacles than without: what the best free pair of a spin costs bounds what can be found
+        there, as closely as the grid of that survey sees it.
+        """
+        free = self._free_costs()
+        order, begin, size, best = np.argsort(free, axis=None, kind="stable"), 0, FIRST_SPINS, np.inf
+        found: list[Point] = []
+        while begin < order.size and not free.flat[order[begin]] > best + WORTH_A_ZOOM * abs(best):
+            chosen = np.zeros(free.shape, dtype=np.bool_)
+            chosen.flat[order[begin : begin + size]] = True
+            for posture in np.flatnonzero(chosen.any(axis=1)).tolist():
+                found += self.surveyed(posture, chosen[posture])
+            best = min((point.cost for point in found), default=np.inf)
+            begin, size = begin + size, 2 * size
+        return self.valleys(found)
+
+    def _free_costs(self) -> Array:
+        """What the best pair at each spin costs without obstacles, shape (4, K), of either wrist flip; inf: none."""
+        if self.settings.weights:
+            return np.zeros((4, self.spins.size))
+        pairs = survey(Problem(self.drilling, self.settings))
+        criterion = CRITERIA[self.settings.objective]
+        cost = criterion.cost_of(-pairs[..., 2] if criterion.more_is_better else pairs[..., 2])
+        return np.asarray(np.where(pairs[..., 0] == 0, cost, np.inf).reshape(4, 2, -1).min(axis=1))
 
 
 @dataclass(frozen=True)
@@ -139,7 +170,8 @@ class _Search:
             points.append(legs.zoomed(seed, least, fine=False))
         order, found = Order(self.drilling, self.settings), list[Candidate]()
         for point in apart(points)[:FINALISTS]:
-            if not np.isfinite(point.cost) or (found and point.cost > min(points).cost * (1 + SAME) + SAME):
+            best = min(points).cost
+            if not np.isfinite(point.cost) or (found and point.cost > best + SAME * abs(best)):
                 continue
             polished = legs.polished(point)
             one = None if polished is None else order.candidate(polished.profile, polished.branch)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,6 @@ __all__ = ["FINE_NODES", "NODES", "LegPairs", "LegRows", "Point", "Sides", "turn
 
 CLOSER_SLOPES = 6  # around the greatest margin
 NODES, FINE_NODES = 25, 97  # points on a leg; odd, for Simpson's rule
-ENDS, FINE_ENDS = 8, 24  # bisections to locate the end of an interval of slopes
 HALF_TURNS = np.pi * np.array([0, 0, 0, 1, 0, 1])
 
 Mask = npt.NDArray[np.bool_]
@@ -106,10 +105,12 @@ class LegPairs:
     Attributes:
         drilling: robot, tool and hole.
         settings: motion threshold, bound on the spin, turns, weights.
+        bisections: to locate the end of an interval of slopes, sampled as usual and closely.
     """
 
     drilling: Drilling
     settings: Settings
+    bisections: ClassVar[tuple[int, int]] = (8, 24)
 
     @cached_property
     def plane(self) -> TwistPlane:
@@ -161,6 +162,10 @@ class LegPairs:
             worst[np.abs(psi_t + slope * depth) > self.settings.psi_bound] = -np.inf
         return worst, slowest[sides.keep].min(axis=0, initial=np.inf)
 
+    def slack(self, sides: Sides, row: Counts, slope: Array, least: float, nodes: int) -> Array:
+        """The slack of each leg, shape (n,), below 0 where it is not admissible; see `judged`."""
+        return self.judged(sides, row, slope, least, nodes)[0]
+
     def slopes(self, sides: Sides, slopes: Array, least: float, *, fine: bool) -> tuple[Counts, Array]:
         """Of given slopes the admissible ones, with the ends of their intervals: rows and slopes, each (n,).
 
@@ -170,11 +175,11 @@ class LegPairs:
             least: motion threshold [rad/m].
             fine: whether to sample closely.
         """
-        nodes, ends = (FINE_NODES, FINE_ENDS) if fine else (NODES, ENDS)
+        nodes, ends = FINE_NODES if fine else NODES, self.bisections[fine]
         rows = np.arange(len(slopes))
 
         def spare(row: Counts, slope: Array) -> Array:
-            return self.judged(sides, row, slope, least, nodes)[0]
+            return self.slack(sides, row, slope, least, nodes)
 
         def spare_at(slopes: Array) -> Array:
             return spare(np.repeat(rows, slopes.shape[1]), slopes.ravel()).reshape(slopes.shape)
@@ -206,10 +211,8 @@ class LegPairs:
         row, slope = row[order], slope[order]
         margin = self.judged(sides, row, slope, least, nodes)[1]
         standoff = np.linspace(0.0, self.drilling.hole.depth, NODES)
-        joints = self.drilling.angles(standoff, sides.psi_t[row, None] + slope[:, None] * standoff)[
-            ..., sides.branch, :
-        ]
-        joints = np.unwrap(joints, axis=1)
+        psi = sides.psi_t[row, None] + slope[:, None] * standoff
+        joints = np.unwrap(self.drilling.angles_on(sides.branch, standoff, psi), axis=1)
         steps = np.abs(np.diff(joints, axis=1))
         weighed = [name for name in AT_POSES if name in dict(self.settings.weights)]
         figures, unweighed = worst(Poses(self.drilling, self.settings, joints), weighed), np.full(row.shape, np.nan)

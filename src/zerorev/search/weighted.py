@@ -10,7 +10,7 @@ The exact answers for the single criteria are candidates, too, so what comes out
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import get_args
@@ -23,7 +23,7 @@ from zerorev.motion.criteria import measure, objective_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
 from zerorev.search.exact import search
-from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
+from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Mask, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 
@@ -89,21 +89,37 @@ class WeightedLegs(LegPairs):
 
     def survey(self) -> list[Point]:
         """The best pairs without reversal of a grid of spins, the least of each valley, best first."""
-        periodic = self.settings.psi_bound is None
-        psi = target_spins(self.settings.psi_bound, GRID)
-        theta_s, theta_psi = joint_rates(self.drilling, np.zeros(psi.size), psi)
-        valleys: list[Point] = []
-        for posture in range(4):
-            for points in self._surveyed(psi, theta_s, theta_psi, posture):
-                at = {int(np.searchsorted(psi, point.psi_t)): point for point in points}
-                for n, point in at.items():
-                    around = [(n + step) % psi.size if periodic else n + step for step in (-1, 1)]
-                    if all(point.cost <= at[m].cost for m in around if m in at):
-                        valleys.append(point)
-        return sorted(valleys)[:VALLEYS]
+        everywhere = np.ones(self.spins.size, dtype=np.bool_)
+        return self.valleys(point for posture in range(4) for point in self.surveyed(posture, everywhere))
 
-    def _surveyed(self, psi: Array, theta_s: Array, theta_psi: Array, posture: int) -> Iterator[list[Point]]:
-        """The best pairs of each spin on either wrist flip of a posture, from the rates at the target."""
+    @cached_property
+    def spins(self) -> Array:
+        """The spins of the grid [rad], shape (K,)."""
+        return target_spins(self.settings.psi_bound, GRID)
+
+    @cached_property
+    def _at_target(self) -> tuple[Array, Array]:
+        return joint_rates(self.drilling, np.zeros(self.spins.size), self.spins)
+
+    def valleys(self, points: Iterable[Point]) -> list[Point]:
+        """Of points of the grid those whose neighbours are no better, best first."""
+        at = {(point.branch, int(np.searchsorted(self.spins, point.psi_t))): point for point in points}
+        size, periodic = self.spins.size, self.settings.psi_bound is None
+        found: list[Point] = []
+        for (branch, n), point in at.items():
+            around = [(branch, (n + step) % size if periodic else n + step) for step in (-1, 1)]
+            if all(point.cost <= at[other].cost for other in around if other in at):
+                found.append(point)
+        return sorted(found)[:VALLEYS]
+
+    def surveyed(self, posture: int, chosen: Mask) -> Iterator[Point]:
+        """The best pairs of some spins of the grid on either wrist flip of a posture.
+
+        Args:
+            posture: 0..3.
+            chosen: which spins, shape (K,).
+        """
+        psi, (theta_s, theta_psi) = self.spins[chosen], (each[chosen] for each in self._at_target)
         branches = [branch for branch in (2 * posture, 2 * posture + 1) if self.drilling.hole.branch in (None, branch)]
         with np.errstate(divide="ignore", invalid="ignore"):
             kappa = (-theta_s / theta_psi)[:, 2 * posture]
@@ -122,11 +138,11 @@ class WeightedLegs(LegPairs):
         sides = Sides(2 * posture, np.repeat(psi[reached], 2), senses, np.zeros(senses.shape, int), np.ones(6, bool),
                        np.full((len(senses), 2, 6), np.inf))  # fmt: skip
         least = self.settings.min_rate
-        rows, chosen = self.slopes(sides, np.sort(slopes * outwards, axis=1), least, fine=False)
-        legs = self.followed(sides, rows, chosen, least, NODES)
+        rows, twist = self.slopes(sides, np.sort(slopes * outwards, axis=1), least, fine=False)
+        legs = self.followed(sides, rows, twist, least, NODES)
         for branch in branches:
             on_branch = legs if branch % 2 == 0 else legs.flipped()
-            yield list(self.best_pairs(sides._replace(branch=branch), on_branch))
+            yield from self.best_pairs(sides._replace(branch=branch), on_branch)
 
     def like(self, seed: Point, psi_t: Array) -> Sides:
         """Sides at spins (P,) that are held to what the seed's legs do to the joints, with the turns that it takes."""
