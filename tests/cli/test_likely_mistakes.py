@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 
 import numpy as np
@@ -236,3 +237,26 @@ def test_a_controller_of_another_maker(capsys, tmp_path):
     (tmp_path / "job.yaml").write_text(text + "controller: rapid\n")
     found, _ = warnings(capsys, tmp_path / "job.yaml")
     assert any("controller rapid is ABB's" in each and "is by KUKA" in each for each in found), found
+
+
+def test_a_robot_description_in_place_of_a_job_says_where_it_belongs(tmp_path, capsys):
+    (tmp_path / "arm.xacro").write_text('<?xml version="1.0"?><robot name="arm"/>')
+    assert main(["plan", str(tmp_path / "arm.xacro"), "-o", str(tmp_path / "p.json")]) == 2
+    said = capsys.readouterr().err
+    assert "is a robot description (URDF, xacro), not a job" in said
+    assert "zerorev robots import" in said
+
+
+def test_a_pipe_in_place_of_a_xacro_file_is_refused(tmp_path, capsys):
+    os.mkfifo(tmp_path / "arm.xacro")
+    assert main(["robots", "import", str(tmp_path / "arm.xacro")]) == 2
+    assert "is not a regular file" in capsys.readouterr().err
+
+
+def test_a_name_that_no_robot_file_may_have_is_refused_when_it_is_imported(tmp_path, capsys):
+    shutil.copy(PRACTICE / "c12_urdf/kr6_support/kr6.urdf", tmp_path / "arm.urdf")
+    assert main(["robots", "import", str(tmp_path / "arm.urdf"), "--name", "x" * 200]) == 2
+    assert "name" in capsys.readouterr().err
+    assert main(["robots", "import", str(tmp_path / "arm.urdf"), "-o", str(tmp_path / "arm.yaml")]) == 0
+    assert "200 random joint angles" in capsys.readouterr().out
+    assert main(["robots", str(tmp_path / "arm.yaml")]) == 0

@@ -29,6 +29,7 @@ from oracles.hostile_inputs import changed_bytes, changed_data, made_up
 from zerorev.errors import ZerorevError
 from zerorev.files.cell_file import CellFile, read_cell
 from zerorev.files.conversion import robot_data, settings_data
+from zerorev.files.dh_file import DhFile, axes_of_dh
 from zerorev.files.hole_list import in_base_frame, read_hole_list
 from zerorev.files.hole_meaning import AS_IN_A_JOB
 from zerorev.files.io import job_from_text, plan_from_text, plan_to_json, read_robot, read_tool
@@ -41,7 +42,10 @@ from zerorev.files.schema import JobFile
 from zerorev.files.table_layout import Given
 from zerorev.files.text import json_text
 from zerorev.files.urdf import read_urdf
+from zerorev.files.urdf_axes import arm_of_urdf
 from zerorev.files.yaml_text import yaml_text
+from zerorev.model._arrays import rotation_rpy, transform
+from zerorev.motion.importing import import_robot
 from zerorev.planning import job as jobs
 from zerorev.program.export import export
 from zerorev.program.krl.read import read_krl
@@ -379,7 +383,73 @@ def check_urdf(data: bytes, folder: Path) -> None:
         assert joints[joint.child].find("parent").get("link") == joint.parent
 
 
+def pose_of(entry: Any) -> Any:
+    origin = entry.find("origin")
+    xyz, rpy = ((origin.get(key, "0 0 0") if origin is not None else "0 0 0").split() for key in ("xyz", "rpy"))
+    return transform(rotation_rpy(*map(float, rpy)), np.array([float(part) for part in xyz]))
+
+
+def check_arm(data: bytes, folder: Path) -> None:
+    """The arm of a description moves as the file says, joint by joint."""
+    (folder / "arm.urdf").write_bytes(data)
+    arm, root = arm_of_urdf(folder / "arm.urdf"), ET.fromstring(data)
+    joints, q = (
+        {joint.find("child").get("link"): joint for joint in root.findall("joint")},
+        np.array([0.3, -0.5, 0.7] * 2),
+    )
+    T, link, angles = np.eye(4), arm.axes.tip, list(q)
+    while link in joints:
+        joint = joints[link]
+        turn = np.eye(4)
+        if joint.get("type") != "fixed":
+            given = joint.find("axis")  # which may be left out, and is x then
+            axis = np.array([float(part) for part in ("1 0 0" if given is None else given.get("xyz")).split()])
+            turn[:3, :3] = Rotation.from_rotvec(angles.pop() * axis / np.linalg.norm(axis)).as_matrix()
+        T, link = pose_of(joint) @ turn @ T, joint.find("parent").get("link")
+    np.testing.assert_allclose(arm.axes.forward(q[None])[0], T, atol=1e-9 * max(1.0, np.abs(T).max()))
+    import_robot(folder / "arm.urdf", limits=dict.fromkeys(arm.axes.joint_names, (-90.0, 90.0, 9.0)))
+
+
+def check_dh(data: bytes, folder: Path) -> None:
+    (folder / "arm.yaml").write_bytes(data)
+    axes, given = axes_of_dh(folder / "arm.yaml"), yaml_of(data)
+    assert list(axes.joint_names) == [visible(row["name"]) for row in given["joints"]]
+    stated = [row.get("lower_deg") for row in given["joints"]]
+    np.testing.assert_allclose(np.rad2deg(axes.lower), [np.nan if each is None else each for each in stated])
+    T = np.eye(4)
+    assert given["convention"] in ("standard", "modified")
+    for row in given["joints"]:
+        a, d = row.get("a_mm", 0) / 1e3, row.get("d_mm", 0) / 1e3
+        alpha, theta = np.deg2rad(row.get("alpha_deg", 0)), np.deg2rad(row.get("theta_deg", 0))
+        across = transform(rotation_rpy(alpha, 0, 0), np.array([a, 0, 0]))
+        along = transform(rotation_rpy(0, 0, theta), np.array([0, 0, d]))
+        T = T @ (across @ along if given["convention"] == "modified" else along @ across)
+    if "base" not in given and "flange" not in given:
+        np.testing.assert_allclose(axes.T_root_tip, T, atol=1e-9 * max(1.0, np.abs(T).max()))
+    import_robot(folder / "arm.yaml")
+
+
 PART_HOLES: list[Any] = []
+DH = """format: zerorev.dh/1
+name: arm
+convention: modified
+joints:
+- {name: A1, alpha_deg: 180, d_mm: -400, lower_deg: -170, upper_deg: 170, speed_deg_s: 360}
+- {name: A2, a_mm: 25, alpha_deg: 90, lower_deg: -190, upper_deg: 45, speed_deg_s: 300}
+- {name: A3, a_mm: 335, theta_deg: -90, lower_deg: -120, upper_deg: 156, speed_deg_s: 360}
+- {name: A4, a_mm: 25, alpha_deg: 90, d_mm: -365, sign: -1, lower_deg: -185, upper_deg: 185, speed_deg_s: 450}
+- {name: A5, alpha_deg: -90, lower_deg: -120, upper_deg: 120, speed_deg_s: 450}
+- {name: A6, alpha_deg: 90, d_mm: -90, lower_deg: -350, upper_deg: 350, speed_deg_s: 540}
+"""
+ARM = '<robot name="arm"><link name="l0"/>' + "".join(
+    f'<link name="l{k}"/><joint name="j{k}" type="revolute"><parent link="l{k - 1}"/><child link="l{k}"/>'
+    f'<origin xyz="{place}" rpy="0 0 0"/><axis xyz="{axis}"/><limit lower="-2" upper="2" velocity="3"/></joint>'
+    for k, (place, axis) in enumerate(
+        [("0 0 0", "0 0 1"), ("0.1 0 0.5", "0 1 0"), ("0 0 0.6", "0 1 0"), ("0 0 0.1", "1 0 0"), ("0.6 0 0", "0 1 0"),
+         ("0 0 0", "1 0 0")], start=1,
+    )
+) + '<link name="tool0"/><joint name="f" type="fixed"><parent link="l6"/><child link="tool0"/>' \
+    '<origin xyz="0.1 0 0" rpy="0 1.5707963267948966 0"/></joint></robot>'  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -412,6 +482,8 @@ def readers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Reader]:
         "part": Reader(part_bytes, check_part, share=50),
         "program": Reader(export(plan).text.encode(), check_program, share=50),
         "urdf": Reader(URDF.encode(), check_urdf, share=50),
+        "arm": Reader(ARM.encode(), check_arm, share=50),
+        "dh": Reader(DH.encode(), check_dh, **as_yaml, schema=DhFile, share=50),
     }
     for reader in found.values():
         reader.check(reader.good, folder)

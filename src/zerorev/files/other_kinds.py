@@ -18,6 +18,7 @@ FOR = {
     "map": ("a map file", "zerorev map"),
     "robot": ("a robot file", "the key robot of a job"),
     "tool": ("a tool file", "the key tool of a job"),
+    "dh": ("a table of link parameters", "zerorev robots import"),
     "cell": ("a cell file", "zerorev simulate --cell"),
 }
 OF_A_MAP = ("targets", "points", "directions")
@@ -43,6 +44,9 @@ def refuse_another_kind(data: Any, file: str) -> None:
     Raises:
         InputError: it says that it is a plan, a map, a robot and so on, or has the keys of a map file.
     """
+    if isinstance(data, str) and _is_description(data):
+        accepted = "a job file (YAML); zerorev robots import makes a robot file of it, which a job names"
+        raise InputError("is a robot description (URDF, xacro), not a job", where=file, accepted=accepted)
     if not isinstance(data, dict):
         return
     name = str(data.get("format", "")).removeprefix("zerorev.").partition("/")[0]
@@ -82,9 +86,13 @@ def refuse_robot_description(text: str, file: str) -> None:
     Raises:
         InputError: it is one.
     """
-    if text.lstrip("\ufeff \t\r\n").startswith(("<?xml", "<robot")):
+    if _is_description(text):
         accepted = "a robot file (YAML); zerorev robots import makes one of it, zerorev view --urdf shows its meshes"
         raise InputError("is a robot description (URDF), not a robot file", where=file, accepted=accepted)
+
+
+def _is_description(text: str) -> bool:
+    return text.lstrip("\ufeff \t\r\n").startswith(("<?xml", "<robot"))
 
 
 def meant_name(name: str, shipped: list[str]) -> str | None:

@@ -14,9 +14,11 @@ from typing import Any
 
 from zerorev.apart import Apart
 from zerorev.errors import InputError
+from zerorev.files.text import read_bytes
 
 __all__ = ["expanded"]
 
+MOST_BYTES = 20 * 2**20
 MOST_LEVELS = 6  # of folders above the file, in which packages are looked for
 
 
@@ -31,8 +33,7 @@ def expanded(path: str | Path, arguments: dict[str, str] | None = None) -> bytes
         InputError: no such file, the extra is missing, or the package cannot expand it.
     """
     path = Path(path)
-    if not path.is_file():
-        raise InputError("no such file", where=str(path), accepted="a xacro file")
+    read_bytes(path, "a xacro file", MOST_BYTES)
     (text,) = Apart(_expand).results([(str(path.resolve()), dict(arguments or {}))])
     return bytes(text)
 

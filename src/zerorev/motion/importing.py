@@ -14,10 +14,12 @@ import numpy as np
 from zerorev.errors import InputError
 from zerorev.files.conversion import robot_data
 from zerorev.files.dh_file import axes_of_dh
+from zerorev.files.robot_schema import RobotFile
 from zerorev.files.text import read_bytes
 from zerorev.files.urdf_axes import DescribedArm, arm_of_urdf
+from zerorev.files.validation import checked
 from zerorev.files.xacro_text import expanded
-from zerorev.files.yaml_text import yaml_text
+from zerorev.files.yaml_text import yaml_document, yaml_text
 from zerorev.model._arrays import rpy_of
 from zerorev.model.axes import Axes
 from zerorev.model.robot import Display, Robot
@@ -93,7 +95,9 @@ def import_robot(
         sources["limits"] += f"; given by hand: {', '.join(limits)}"
     found = robot_of_axes(axes, manufacturer=manufacturer, display=display, sources=sources)
     notes += _notes(axes, found)
-    return Imported(replace(found.robot, caveats=(CATALOGUE, *_caveats(axes, found))), tuple(notes), found.apart)
+    robot = replace(found.robot, caveats=(CATALOGUE, *_caveats(axes, found)))
+    checked(RobotFile, yaml_document(robot_file(robot), f"{path}, as a robot file"))  # e.g. names of any length
+    return Imported(robot, tuple(notes), found.apart)
 
 
 def robot_file(robot: Robot) -> str:
