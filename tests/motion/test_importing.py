@@ -227,6 +227,13 @@ class TestDescriptions:
         with pytest.raises(InputError, match=r"7 turning joints from .* to f"):
             self.of(tmp_path, arm=gripper("revolute", ""))
 
+    def test_a_joint_of_another_kind_within_the_arm_is_the_reason(self, tmp_path):
+        def coupled(joint):
+            return joint | ({"more": '<mimic joint="joint_2"/>'} if joint["name"] == "joint_3" else {})
+
+        with pytest.raises(InputError, match=r"joint joint_3 follows another \(mimic\)"):
+            self.of(tmp_path, coupled)
+
     def test_loops_and_loose_ends_are_refused(self, tmp_path):
         def to_itself(joint):
             return joint | ({"parent": "tool0"} if joint["name"] == "joint_1" else {})

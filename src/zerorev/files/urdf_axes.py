@@ -113,8 +113,10 @@ class _Tree:
         ends = [link for link, path in clean.items() if len(_moving(path)) == most]
         if most == 6 and len({_moving(clean[link])[-1].name for link in ends}) > 1:
             raise InputError("two arms of six joints", where=self.file, accepted=f"--tip with one of {_some(ends)}")
-        if most != 6:
-            self._six(ends[-1] if ends else self.root)
+        if most > 6:
+            self._six(ends[-1])
+        if most < 6:  # then a joint of another kind in the longest chain may be the reason
+            self._six(max(self.paths, key=lambda link: len(_moving(self.paths[link]))))
         link = self._best(ends)
         others = [each for each in ends if each != link]
         notes.append(f"the tip is the link {link}" + (f"; others: {_some(others)} (--tip)" if others else ""))
