@@ -13,7 +13,6 @@ from zerorev.model.cycle import Cycle
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
 from zerorev.verify.certificate.certify import certify_plan
-from zerorev.web.opening import opened_text
 
 DRILL = {"tcp_mm": [100, 0, 65], "rpy_deg": [0, -90, 0]}
 REAMER = {"tcp_mm": [120, 0, 80], "rpy_deg": [0, -90, 0]}
@@ -186,13 +185,6 @@ def test_the_replay_is_of_the_chosen_tool(files, capsys):
     assert main(["replay", str(files / "two.plan.json"), "-o", str(second), "--tool", "2"]) == 0
     assert "(the first of 2)" in first.read_text()
     assert "Replay of two_tool_2" in second.read_text()
-
-
-def test_the_page_does_not_lose_the_other_tools(files):
-    with pytest.raises(InputError, match="is for 2 tools, and the page shows one"):
-        opened_text((files / "two.yaml").read_text(), "two.yaml")
-    with pytest.raises(InputError, match="is for 2 tools"):
-        opened_text((files / "two.plan.json").read_text(), "two.plan.json")
 
 
 @pytest.mark.parametrize(

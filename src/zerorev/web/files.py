@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 from zerorev.errors import InputError
@@ -112,7 +112,9 @@ def plan_written(given: Iterator[Any]) -> Iterator[bytes]:
     """
     from zerorev.planning.sequence import with_moves
 
-    return cut(json_text(plan_to_json(with_moves(whole(given)))).encode())
+    plan = whole(given)
+    plan = replace(with_moves(plan), further=tuple(with_moves(each) for each in plan.further))
+    return cut(json_text(plan_to_json(plan)).encode())
 
 
 def job_written(given: Iterator[Any]) -> Iterator[tuple[str, str]]:

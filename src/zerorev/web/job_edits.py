@@ -10,6 +10,7 @@ from zerorev.errors import InputError
 from zerorev.model.hole import Hole
 from zerorev.model.job import Settings
 from zerorev.model.plan import HolePlan, Strokes
+from zerorev.web.of_tools import check_own_holes
 from zerorev.web.state import NONE, State, caution_of, selected
 
 __all__ = ["answered", "with_cell", "with_hole", "with_holes", "with_settings", "without_hole"]
@@ -40,11 +41,15 @@ def with_hole(state: State, hole: Hole, instead_of: str | None = None) -> State:
     """A hole is added, or takes the place of one, whose answer goes with it; it is selected.
 
     Raises:
-        InputError: nothing is opened yet, or another hole has this id.
+        InputError: nothing is opened yet, another hole has this id, or several tools drill the holes, of which then the
+            branch alone can be changed.
     """
     if state.job is None:
         raise InputError("nothing is opened", where="hole", accepted="a job, opened before")
     old = state.job.holes
+    before = next((each for each in old if each.id == instead_of), None)
+    if before is None or before.id != hole.id or not _same_place(before, hole) or before.depth != hole.depth:
+        check_own_holes(state)
     holes = (*old, hole) if instead_of is None else tuple(hole if each.id == instead_of else each for each in old)
     answers = {key: value for key, value in state.answers.items() if key not in (instead_of, hole.id)}
     return replace(
@@ -75,10 +80,11 @@ def with_holes(state: State, holes: Sequence[Hole]) -> State:
     """Holes are added, as out of a table; the first of them is selected.
 
     Raises:
-        InputError: nothing is opened yet, no hole is given, or two holes have the same id.
+        InputError: nothing is opened yet, no hole is given, two holes have the same id, or several tools drill them.
     """
     if state.job is None or not holes:
         raise InputError("there is nothing to add", where="holes", accepted="one hole or more, to a job opened before")
+    check_own_holes(state)
     job = replace(state.job, holes=(*state.job.holes, *holes))
     return replace(state, job=job, selected=holes[0].id, steered=None, caution=caution_of(job))
 
@@ -87,10 +93,11 @@ def without_hole(state: State, hole: str) -> State:
     """A hole is taken out, its neighbour selected.
 
     Raises:
-        InputError: it is the last one.
+        InputError: it is the last one, or several tools drill it.
     """
     if state.job is None:
         return state
+    check_own_holes(state)
     at = next((n for n, each in enumerate(state.job.holes) if each.id == hole), None)
     if at is None:
         return state
@@ -116,9 +123,16 @@ def _same(answer: HolePlan, asked: Hole, strokes: Strokes) -> bool:
     hole = answer.hole
     by_hand = hole.profile is not None and asked.profile is None
     return (
-        bool((hole.target == asked.target).all())
-        and bool((hole.direction == asked.direction).all())
-        and bool((hole.psi_zero == asked.psi_zero).all())
+        _same_place(hole, asked)
         and (strokes == "deepest" or hole.depth == asked.depth)
         and (by_hand or hole.branch == asked.branch)
+    )
+
+
+def _same_place(one: Hole, other: Hole) -> bool:
+    """Whether two holes have the same target and direction, and count their spins alike."""
+    return (
+        bool((one.target == other.target).all())
+        and bool((one.direction == other.direction).all())
+        and bool((one.psi_zero == other.psi_zero).all())
     )

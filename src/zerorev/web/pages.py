@@ -83,7 +83,7 @@ class Pages:
             job = self._pages[tab].session.state.job
             if job is not None and id(job) not in shown:
                 shown.add(id(job))
-                holes += len(job.holes)
+                holes += len(job.holes) * max(len(self._pages[tab].session.state.tools), 1)
             if len(left) - number <= too_many or (number and holes > MOST_HOLES):
                 del self._pages[tab]
         if len(self._pages) < before:

@@ -83,6 +83,11 @@ class Session:
             self._future = []
         self._show(state)
 
+    def start_over(self, state: State) -> None:
+        """Show another state, from which no step is taken back, as of another tool."""
+        self._past, self._future, self._step = [], [], None
+        self._show(state)
+
     @property
     def can_undo(self) -> bool:
         """Whether there is a step to take back."""

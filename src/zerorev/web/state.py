@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -108,6 +108,9 @@ class State:
         cells: a slice of a workspace map of the same robot and tool, or None.
         meshes: of the links of the robot (`report.urdf_meshes`), or None: shapes made from its geometry.
         arm: what is known of the real arm, and was simulated with it.
+        tools: of a job of several tools what the page shows of each, that of the tool that is shown as it was when it
+            was last left (`web.of_tools`); else empty.
+        tool: which of them is shown, from 0.
     """
 
     job: Job | None = None
@@ -126,6 +129,8 @@ class State:
     cells: MapSlice | None = None
     meshes: tuple[tuple[Mesh, ...], ...] | None = None
     arm: RealArm = field(default_factory=RealArm)
+    tools: tuple[State, ...] = ()
+    tool: int = 0
 
     @cached_property
     def hole(self) -> Hole | None:
@@ -151,13 +156,16 @@ class State:
 
 
 def opened_job(job: Job) -> State:
-    """A job of which nothing is planned yet, its first hole selected.
+    """A job of which nothing is planned yet, its first hole selected, and of several tools the first shown."""
+    return _of_all_tools(
+        State(replace(each, further=()) if each.further else each, selected=each.holes[0].id, caution=caution_of(each))
+        for each in job.of_all_tools
+    )
 
-    Raises:
-        InputError: it has several tools.
-    """
-    _refuse_several_tools(len(job.further) + 1)
-    return State(job, selected=job.holes[0].id, caution=caution_of(job))
+
+def _of_all_tools(states: Iterable[State]) -> State:
+    tools = tuple(states)
+    return replace(tools[0], tools=tools) if len(tools) > 1 else tools[0]
 
 
 def caution_of(job: Job) -> str | None:
@@ -165,19 +173,12 @@ def caution_of(job: Job) -> str | None:
     return "\n".join((*(finding.message for finding in (*likely_mistakes(job), *job.said)), *job.notes)) or None
 
 
-def _refuse_several_tools(count: int) -> None:
-    if count > 1:
-        accepted = "one of one tool; the command line plans, checks and exports this one"
-        raise InputError(f"is for {count} tools, and the page shows one", where="tools", accepted=accepted)
-
-
 def opened_plan(plan: Plan) -> State:
-    """A plan with its answers, its first hole selected.
+    """A plan with its answers, its first hole selected, and of several tools the first shown."""
+    return _of_all_tools(_opened_plan(each) for each in plan.of_all_tools)
 
-    Raises:
-        InputError: it has several tools.
-    """
-    _refuse_several_tools(len(plan.further) + 1)
+
+def _opened_plan(plan: Plan) -> State:
     holes = tuple(answer.hole for answer in plan.holes)
     job = Job(plan.robot, plan.tool, holes, plan.settings, plan.T_base_part, plan.name)
     answers = MappingProxyType({answer.hole.id: answer for answer in plan.holes})

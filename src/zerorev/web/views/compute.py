@@ -144,6 +144,9 @@ def _plan(work: Work, holes: Sequence[Hole], strokes: Strokes) -> None:
     state = work.session.state
     if not holes:
         return
+    if strokes == "deepest" and state.tools:
+        failed("the holes are those of several tools: zerorev depth finds how deep they go with each")
+        return
     if len(holes) > 1:  # of many, those that have no such answer yet: a job that was stopped is resumed
         holes = [hole for hole in holes if strokes != state.strokes or hole.id not in state.answers]
         if not holes and (state.order or strokes == "deepest"):

@@ -12,6 +12,7 @@ from zerorev.errors import ZerorevError
 from zerorev.model.plan import Plan
 from zerorev.web import files
 from zerorev.web.computing import Work
+from zerorev.web.of_tools import whole_plan
 from zerorev.web.session import Session
 from zerorev.web.state import State, plan_of
 from zerorev.web.views.fields import form
@@ -34,7 +35,7 @@ def downloads(session: Session, work: Work) -> None:
         ui.button("Download", icon="download").classes("zr-take").props('outline no-caps dense data-testid="download"'),
         ui.menu().props('aria-label="download"'),
     ):
-        _entry("Plan (JSON)", "download-plan", lambda: _whole(session, "plan", lambda: _plan(session)))
+        _entry("Plan (JSON)", "download-plan", lambda: _whole(session, "plan", lambda: _plan(session), of=whole_plan))
         _entry("Robot program …", "download-program", lambda: program_download(session, work))
         _entry(
             "Robot program from this hole on …",
@@ -70,10 +71,11 @@ def _entry(text: str, name: str, wish: Callable[[], None]) -> None:
     ui.menu_item(text, on_click=asked).props(f'data-testid="{name}"')
 
 
-def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
+def _whole(session: Session, what: str, go: Callable[[], None], of: Callable[[State], Plan] = plan_of) -> None:
     """Make something of all holes; where some have no answer, only once the user has been asked and agrees."""
-    plan = plan_of(session.state)
-    missing = [finding for finding in plan.findings if finding.kind == "unfinished"]
+    plan = of(session.state)
+    found = (finding for each in plan.of_all_tools for finding in each.findings)
+    missing = list(dict.fromkeys(finding for finding in found if finding.kind == "unfinished"))
     if not missing:
         go()
         return
@@ -85,13 +87,13 @@ def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
         except ZerorevError as error:
             failed(str(error))
 
-    count, of = len(plan.holes), len(plan.holes) + len(session.state.unplanned)
+    count, total = len(plan.holes), 0 if session.state.job is None else len(session.state.job.holes)
     dialog, inside, _ = form(f"The {what} will not have all holes", "incomplete")
     with inside:
         findings_list(missing)
         with ui.element("div").classes("zr-ends"):
             ui.button("Close", on_click=dialog.close, color=None).classes("zr-quiet").props("flat no-caps")
-            words = f"Download with {of_holes(count, of)}" if count < of else "Download all the same"
+            words = f"Download with {of_holes(count, total)}" if count < total else "Download all the same"
             ui.button(words, icon="download", on_click=agreed).props('unelevated no-caps data-testid="save-incomplete"')
     dialog.on("hide", dialog.delete)
     dialog.open()
@@ -101,7 +103,7 @@ def _whole(session: Session, what: str, go: Callable[[], None]) -> None:
 
 
 def _plan(session: Session) -> None:
-    plan = plan_of(session.state)
+    plan = whole_plan(session.state)
     ending = "plan" if plan.strokes == "asked" else "depths"
     name = f"{stem(plan.name)}.{ending}.json"
     save = partial(ui.download.content, filename=name, media_type="application/json")
@@ -112,6 +114,8 @@ def _job(session: Session) -> None:
     job = session.state.job
     if job is None:
         return
+    if session.state.tools:
+        raise ZerorevError("the page writes jobs of one tool; this one has several, and its holes are as in its file")
 
     def save(made: dict[str, str]) -> None:
         handed_out(made, "application/yaml", job.name)

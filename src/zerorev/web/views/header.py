@@ -9,6 +9,7 @@ from nicegui import ui
 
 from zerorev.model.job import Job
 from zerorev.motion.kinematics import wrist_offset
+from zerorev.web.of_tools import tool_names, with_tool
 from zerorev.web.session import Session
 from zerorev.web.state import State
 from zerorev.web.views.fields import built_when_opened
@@ -39,6 +40,7 @@ def header(session: Session) -> None:
 def _of_a_job(session: Session) -> None:
     with ui.element("div").classes("zr-job"):
         name, machine = ui.label().classes("zr-job-name"), ui.label().classes("zr-job-machine")
+    _tools(session)
     ui.element("span").classes("zr-spring")
     settings = built_when_opened(settings_dialog, session)
     back = _step("undo", "Undo the last edit or drag (Ctrl-Z)", session.undo)
@@ -65,6 +67,26 @@ def _of_a_job(session: Session) -> None:
         draw(session.state.job)
     enable()
     session.watch(changed)
+
+
+def _tools(session: Session) -> None:
+    """Which tool is shown, where the job has several."""
+
+    def chosen(number: int | None) -> None:
+        if number is not None and number != session.state.tool:
+            session.start_over(with_tool(session.state, number))
+
+    choice = ui.select({0: ""}, on_change=lambda event: chosen(event.value)).classes("zr-choice")
+    choice.props('outlined dense options-dense aria-label="tool that is shown" data-testid="tool"')
+
+    def draw(state: State) -> None:
+        names = tool_names(state)
+        choice.set_visibility(bool(names))
+        if names:
+            choice.set_options(dict(enumerate(names)), value=state.tool)
+
+    draw(session.state)
+    session.watch(lambda before, after: draw(after) if before.tools is not after.tools else None)
 
 
 def _step(name: str, words: str, do: Callable[[], None]) -> ui.button:

@@ -17,6 +17,7 @@ from zerorev.report.words.hole_rows import QUICK, HoleRow, hole_row, matching
 from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings
 from zerorev.web.job_edits import without_hole
+from zerorev.web.of_tools import check_own_holes
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected
 from zerorev.web.throttle import throttled
@@ -169,6 +170,20 @@ def _rows(state: State, old: Mapping[str, HoleRow], before: State | None) -> dic
 def _tools(session: Session, table: _Table) -> None:
     """Filter, and what can be done to the holes."""
     edit, paste = (built_when_opened(dialog, session) for dialog in (hole_dialog, paste_dialog))
+
+    def own(change: Callable[[], object]) -> Callable[[], None]:
+        """Where the holes are those of this tool alone."""
+
+        def checked() -> None:
+            try:
+                check_own_holes(session.state)
+            except InputError as error:
+                failed(f"{error.what} (accepted: {error.accepted})")
+            else:
+                change()
+
+        return checked
+
     with ui.element("div").classes("zr-tools"):
         find = ui.input(placeholder="filter: id, or reversals>0").without_auto_validation()
         find.props('dense outlined clearable debounce=200 aria-label="filter the holes" data-testid="filter"')
@@ -178,9 +193,9 @@ def _tools(session: Session, table: _Table) -> None:
         shown = ui.label().classes("zr-muted").props('role="status" data-testid="holes-shown"')
         ui.element("span").classes("zr-spring")
         for icon, words, name, do in (
-            ("add", "add a hole", "add-hole", lambda: edit(None)),
-            ("edit", "edit this hole", "edit-hole", lambda: edit(session.state.hole)),
-            ("content_paste", "paste from a spreadsheet, or open a CSV file", "paste", paste),
+            ("add", "add a hole", "add-hole", own(lambda: edit(None))),
+            ("edit", "edit this hole", "edit-hole", own(lambda: edit(session.state.hole))),
+            ("content_paste", "paste from a spreadsheet, or open a CSV file", "paste", own(paste)),
             ("delete_outline", "take this hole out", "take-out", lambda: _take_out(session)),
         ):
             button = ui.button(icon=icon, on_click=do, color=None).classes("zr-quiet").props("flat round dense")
