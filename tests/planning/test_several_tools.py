@@ -150,7 +150,17 @@ def test_the_plan_of_the_command_is_that_of_the_library(files, plan):
 
 def test_commands_with_no_choice_say_that_only_the_first_tool_counts(files, capsys):
     assert main(["offset", str(files / "two.yaml"), "--offsets-mm", "100"]) in (0, 1)
-    assert "the job has 2 tools; here only the first one counts" in capsys.readouterr().err
+    assert "two: of its 2 tools only the first counts here, tool" in capsys.readouterr().err
+
+
+def test_recorded_and_measured_holes_are_those_of_the_first_tool(files, capsys):
+    """And of the strokes of a hole nothing is predicted as if one of them drilled all of it."""
+    measured = files / "measured.csv"
+    measured.write_text("hole,depth_mm,x_mm,y_mm,diameter_mm\na,1,0,0,6\na,19,0,0.1,6\nb,1,0,0,6\nb,7,0,0,6\n")
+    assert main(["recordings", "holes", str(measured), "--plan", str(files / "two.plan.json"), "--sets", "1"]) == 1
+    said = capsys.readouterr()
+    assert "of its 2 tools only the first counts here" in said.err
+    assert "is drilled in 2 strokes, each of which is simulated for itself" in said.out
 
 
 @pytest.mark.parametrize("command", [["rates", "two.yaml"], ["compare", "two.plan.json", "two.yaml"]])

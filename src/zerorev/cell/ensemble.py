@@ -164,6 +164,8 @@ def study(
 def _why_not(hole: HolePlan) -> str | None:
     if hole.motion is None:
         return "it has no motion"
+    if hole.strokes:
+        return f"it is drilled in {len(hole.strokes)} strokes, each of which is simulated for itself"
     return None if hole.verified is not None and hole.verified.passed else "its motion did not pass the check"
 
 

@@ -28,6 +28,7 @@ __all__ = [
     "Whole",
     "app",
     "check_outputs",
+    "first_tool",
     "job_of",
     "machines",
     "map_app",
@@ -121,6 +122,15 @@ def of_tool(whole: Several, tool: int | None) -> Several:
     return whole.of_all_tools[(tool or 1) - 1]
 
 
+def first_tool(whole: Several) -> Several:
+    """A plan or a job, of which the command deals with the first tool alone; where there are others, that is noted."""
+    if whole.further:
+        terminal.note(
+            f"{whole.name}: of its {len(whole.of_all_tools)} tools only the first counts here, {whole.tool.name}"
+        )
+    return whole
+
+
 def job_of(path: Path, *, every_tool: bool = False, **how: Any) -> Job:
     """The job of a file, as `files.io.read_job` has it; what was left out of its list of holes is noted beside.
 
@@ -135,9 +145,7 @@ def job_of(path: Path, *, every_tool: bool = False, **how: Any) -> Job:
     job = read_job(path, **how)
     for note in job.notes:
         terminal.note(note)
-    if job.further and not every_tool:
-        terminal.note(f"the job has {len(job.further) + 1} tools; here only the first one counts: {job.tool.name}")
-    return job
+    return job if every_tool else first_tool(job)
 
 
 def check_outputs(outputs: Iterable[Path | None], *sources: Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, numbers, recordings_app
+from zerorev.cli.common import FINE, first_tool, numbers, recordings_app
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -67,7 +67,7 @@ def planned(plan: Path | None, hole: str | None) -> PlannedHole | None:
     from zerorev.cell.recordings.tip import planned_hole
     from zerorev.files.io import read_plan
 
-    return planned_hole(read_plan(plan), hole)
+    return planned_hole(first_tool(read_plan(plan)), hole)
 
 
 def runs(

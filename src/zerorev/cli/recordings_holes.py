@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from zerorev.cli.common import FINE, FOUND, Whole, check_outputs, machines, need, recordings_app
+from zerorev.cli.common import FINE, FOUND, Whole, check_outputs, first_tool, machines, need, recordings_app
 from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
@@ -70,7 +70,7 @@ def holes(
     from zerorev.cell.recordings.holes_predicted import check_of_plan
     from zerorev.files.io import read_plan
 
-    stated = read_plan(plan)
+    stated = first_tool(read_plan(plan))
     check_of_plan(found, stated, str(file))
     compared = _compared(found, stated, study, cell, sets, seed, motion)
     if json:
