@@ -65,7 +65,7 @@ def test_without_the_clamps_in_the_job_they_are_hit(job, record_property):
         hit = hit_of(setting, drilling, job.settings, answer.motion.profile, answer.motion.branch)
         hits += [] if hit is None else [hit.between[1]]
     met = Around.of(job.robot, job.tool, job.settings)
-    through = [move for move in plan.transitions if met.touches(move.joints)]
+    through = [move for move in plan.transitions if met.hit(move.joints) is not None]
     assert set(hits) <= {"left clamp", "right clamp"}
     assert len(hits) + len(through) > 3
     record_property(

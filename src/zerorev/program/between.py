@@ -9,10 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from zerorev.collision.moves import EXACT, Nearest, nearest
+from zerorev.collision.near import Nearest as Met
 from zerorev.collision.shapes import Capsules, capsules_of
 from zerorev.kernels.tour import move_time
 from zerorev.model._arrays import Array
@@ -139,33 +141,42 @@ def moves_between(robot: Robot, tool: Tool, settings: Settings, stops: Sequence[
         legs = [_Leg(None, stops[0], home), *legs, _Leg(stops[-1], None, home)]
     around = Around.of(robot, tool, settings)
     if settings.part_thickness == 0 or settings.surroundings.part is not None:
-        legs = legs if around is None else [_led_over(around, robot, settings, leg, None) for leg in legs]
-        return tuple(_transition(robot, settings, leg, None, (), around) for leg in legs)
+        led = [_led_over(around, robot, settings, leg, None) for leg in legs]
+        return tuple(_transition(robot, settings, leg, None, (), around) for leg in led)
     part = _Part(robot, capsules_of(robot, tool), settings.part_thickness)
     closest = part.nearest(legs, part.capsules)
     through = _raised(part, settings, legs, closest)
-    if around is not None:
-        led = [leg if k in through else _led_over(around, robot, settings, leg, part) for k, leg in enumerate(legs)]
-        moved = [k for k, leg in enumerate(led) if leg is not legs[k]]
-        for k, near in zip(moved, part.nearest([led[k] for k in moved], part.capsules), strict=True):
-            legs[k], closest[k] = led[k], near
+    stays = replace(settings, safe_height=0.0)  # of a move that dips at any height
+    led = [_led_over(around, robot, stays if k in through else settings, leg, part) for k, leg in enumerate(legs)]
+    moved = [k for k, one in enumerate(led) if one.leg is not legs[k]]
+    for k, near in zip(moved, part.nearest([led[k].leg for k in moved], part.capsules), strict=True):
+        closest[k] = near
     return tuple(
-        _transition(robot, settings, leg, near.clearance, _findings(part, settings, leg, near, through.get(k)), around)
-        for k, (leg, near) in enumerate(zip(legs, closest, strict=True))
-    )
+        _transition(robot, settings, one, near.clearance, _findings(part, settings, one.leg, near, through.get(k)),
+                    around)
+        for k, (one, near) in enumerate(zip(led, closest, strict=True))
+    )  # fmt: skip
 
 
-def _led_over(around: Around, robot: Robot, settings: Settings, leg: _Leg, part: _Part | None) -> _Leg:
+class _Led(NamedTuple):
+    """A move, and what it touches all the same."""
+
+    leg: _Leg
+    hit: Met | None
+
+
+def _led_over(around: Around | None, robot: Robot, settings: Settings, leg: _Leg, part: _Part | None) -> _Led:
     """A move that touches what stands around, led over it where that can be; a safe height of 0 forbids it."""
-    if settings.safe_height == 0 or not around.touches(leg.joints):
-        return leg
+    hit = None if around is None else around.hit(leg.joints)
+    if around is None or hit is None or settings.safe_height == 0:
+        return _Led(leg, hit)
     for rise in RISES:
         if rise * robot.size > (settings.safe_height or 0.0):
             higher = leg.rising(rise * robot.size)
             dips = part is not None and part.nearest([higher], part.lines)[0].clearance < -SLACK
-            if not dips and not around.touches(higher.joints):
-                return higher
-    return leg
+            if not dips and around.hit(higher.joints) is None:
+                return _Led(higher, None)
+    return _Led(leg, hit)
 
 
 def _raised(part: _Part, settings: Settings, legs: list[_Leg], closest: list[Nearest]) -> dict[int, Nearest]:
@@ -200,12 +211,13 @@ def _raised(part: _Part, settings: Settings, legs: list[_Leg], closest: list[Nea
 def _transition(
     robot: Robot,
     settings: Settings,
-    leg: _Leg,
+    led: _Led,
     clearance: float | None,
     met: tuple[Finding, ...],
     around: Around | None,
 ) -> Transition:
     """A move as data, with what turns on it."""
+    leg = led.leg
     joints, one, other = leg.joints, leg.one, leg.other
     turns = np.abs(np.diff(joints, axis=0)).sum(axis=0)
     axis = int(np.argmax(turns))
@@ -222,7 +234,7 @@ def _transition(
     near = None if around is None else around.clearance(joints)
     found += met
     if around is not None:
-        found += around.findings(leg.name, joints, near, leg.hole)
+        found += around.findings(leg.name, led.hit, near, leg.hole)
     return Transition(start, to, joints, time, changes, float(turns[axis]), clearance, tuple(found), near)
 
 

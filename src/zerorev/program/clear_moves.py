@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from zerorev.collision.arms import Setting, setting_of
-from zerorev.collision.near import first_hit, moves, nearest_of
+from zerorev.collision.near import Nearest, first_hit, moves, nearest_of
 from zerorev.model._arrays import Array
 from zerorev.model.arm_bodies import withdrawn
 from zerorev.model.finding import Finding
@@ -47,13 +47,13 @@ class Around:
         touching = setting_of(robot, withdrawn(robot, tool), replace(settings, clearance=0.0))
         return None if touching is None else cls(robot, tool, settings, touching)
 
-    def touches(self, joints: Array) -> bool:
-        """Whether moves through some points, with a stop at each, touch something, or are not proven not to.
+    def hit(self, joints: Array) -> Nearest | None:
+        """What moves through some points, with a stop at each, touch, or are not proven not to; None: nothing.
 
         Args:
             joints: the points [rad], shape (n, 6).
         """
-        return first_hit(self.setting, self.robot, moves(joints), self.setting.all_pairs) is not None
+        return first_hit(self.setting, self.robot, moves(joints), self.setting.all_pairs)
 
     def clearance(self, joints: Array) -> Clearance | None:
         """The least distance on such moves, proven by the check's own code, too; None where nothing stands around."""
@@ -64,16 +64,15 @@ class Around:
         sound = found.proven and proven(self.robot, self.tool, self.settings, claimed, joints)
         return replace(claimed, certified=sound)
 
-    def findings(self, name: str, joints: Array, near: Clearance | None, hole: str | None) -> Iterator[Finding]:
+    def findings(self, name: str, hit: Nearest | None, near: Clearance | None, hole: str | None) -> Iterator[Finding]:
         """That such moves touch something, or come nearer to it than asked for.
 
         Args:
             name: how a message calls them.
-            joints: the points [rad], shape (n, 6).
+            hit: what they touch.
             near: the least distance.
             hole: that the finding names.
         """
-        hit = first_hit(self.setting, self.robot, moves(joints), self.setting.all_pairs)
         if hit is not None:
             body, other = hit.between
             met = f"the {body} touches {other}" if body else "it could not be proven to keep clear"
