@@ -10,7 +10,7 @@ from zerorev.collision.arms import _solids
 from zerorev.kernels import solids
 from zerorev.kernels._jit import kernel
 from zerorev.model.body import Box, Capsule, Mesh
-from zerorev.verify.around import _heap
+from zerorev.verify.heaps import heap_of
 from zerorev.verify.solids import nearest
 
 SLOW = bool(numba.config.DISABLE_JIT)
@@ -96,7 +96,7 @@ def test_as_far_apart_as_an_outside_library_finds(shape, obstacle, poses):
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_check_finds_the_same_distances_by_its_own_way(shape, obstacle, poses):
     R, place = poses
-    heap, ours = _heap([SHAPES[shape], OBSTACLES[obstacle]]), distances(SHAPES[shape], OBSTACLES[obstacle], poses)
+    heap, ours = heap_of([SHAPES[shape], OBSTACLES[obstacle]]), distances(SHAPES[shape], OBSTACLES[obstacle], poses)
     theirs = np.array([nearest(heap, 0, np.append(R[k].ravel(), place[k]), 1, np.inf) for k in range(CASES)])
     # the check sees surfaces: what is wholly inside a box touches nothing
     inside = (ours <= 0) & (theirs > 0)

@@ -11,17 +11,23 @@ from oracles.solids import box_at, least_at
 from zerorev.collision.arms import setting_of
 from zerorev.files.io import plan_from_text, plan_to_json, read_job
 from zerorev.files.text import json_text
+from zerorev.model.arm_bodies import bodies_of
 from zerorev.model.surroundings import NOTHING_AROUND, Surroundings
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import joint_path
+from zerorev.motion.kinematics import forward
 from zerorev.motion.links import link_frames
+from zerorev.planning.answered import answered
 from zerorev.planning.hole import plan
 from zerorev.planning.job import plan_job
 from zerorev.planning.restated import check_plan
 from zerorev.search.clear import clear_of, keeps_clear
 from zerorev.search.members import members
 from zerorev.search.optimum import best_motion
+from zerorev.search.rank import Order
+from zerorev.verify.around import clearance_claimed
 from zerorev.verify.check import verify_hole
+from zerorev.verify.way import corner_moves
 
 MARGIN = 5e-3
 FAST = {"proof_boxes": 0, "clearance": MARGIN}
@@ -113,6 +119,59 @@ def test_a_plan_file_keeps_what_stands_around_and_is_checked_again(job):
     nearer = replace(again, holes=(replace(again.holes[0], clearance=replace(again.holes[0].clearance, least=0.5)),))
     assert check_plan(nearer).wrong
     assert "surroundings" not in plan_to_json(replace(whole, settings=replace(settings, surroundings=NOTHING_AROUND)))
+
+
+@pytest.mark.parametrize("part", ["lead_in", "approach", "retract"])
+def test_the_way_is_held_to_what_is_said_of_it(job, part):
+    """A box stands where one part of the way ends: the plan cuts it short, and a plan that does not say so is wrong."""
+    hole = job.holes[0]
+    lengths = {"lead_in": 0.0, "approach": 0.0, "retract": 0.0, part: 0.02}
+    asked = replace(job.settings, **lengths)
+    free = plan(job.robot, job.tool, hole, asked)
+    drilling, profile = Drilling(job.robot, job.tool, hole), free.motion.profile
+    share = np.linspace(0, 1, 5)
+    psi = profile.psi[-1 if part == "retract" else 0] + 0.02 * share * profile.twist_rate[0] * (part == "lead_in")
+    way = drilling.angles(hole.depth + 0.02 * share, psi)[:, free.motion.branch]
+    legs = joint_path(drilling, profile, free.motion.branch).joints[::20]
+    moving = [body for body in bodies_of(job.robot, job.tool) if body.link > 0]
+    rng = np.random.default_rng(0)
+    while True:  # a box that is near at the end of the way, and not before
+        box = box_at(forward(job.robot, way[-1])[:3, 3] + rng.uniform(-0.3, 0.3, 3), [0.05, 0.05, 0.05])
+        far = least_at(job.robot, moving, np.concatenate([legs, way[:3]]), box).min()
+        if far > MARGIN + 2e-3 and 1e-3 < least_at(job.robot, moving, way[-1:], box)[0] < MARGIN - 1e-3:
+            break
+    settings = replace(asked, surroundings=Surroundings((box,)))
+    # not a twin of which more of the lead-in runs
+    answer = answered(drilling, settings, "planned", Order(drilling, settings).candidate(profile, free.motion.branch))
+    assert answer.verified.passed
+    said = answer.clearance
+    assert 0 < getattr(said, part) < 0.02
+    whole = replace(answer, clearance=replace(said, **{part: 0.02}))
+    failures = verify_hole(job.robot, job.tool, settings, whole).failures
+    assert any("comes within" in failure for failure in failures)
+    longer = replace(answer, clearance=replace(said, **{part: 0.021}))
+    failures = verify_hole(job.robot, job.tool, settings, longer).failures
+    assert any("is said to keep clear, asked for" in failure for failure in failures)
+
+
+def test_a_corner_of_joint_moves_is_held_apart_too(job):
+    hole = job.holes[0]
+    far = Surroundings((box_at([2.0, 0.0, 0.5], [0.1, 0.1, 0.1]),))
+    settings = replace(job.settings, surroundings=far, controller="rapid", corner="joint")
+    answer = plan(job.robot, job.tool, hole, settings)
+    assert answer.corner.kind == "joint"
+    assert answer.verified.passed
+    moves = corner_moves(job.robot, job.tool, hole, answer.motion, answer.corner)
+    assert moves.shape == (3, 6)
+    np.testing.assert_allclose(moves[1], answer.motion.joints[1], atol=1e-9)
+    wall = replace(far, obstacles=(box_at(hole.target, [0.002, 0.002, 0.002]),))
+    failures = list(
+        clearance_claimed(
+            job.robot, job.tool, replace(settings, surroundings=wall), replace(answer.clearance, certified=False), [],
+            moves, planned=False,
+        )
+    )  # fmt: skip
+    assert any("joint moves of its corner are not proven to touch nothing" in failure for failure in failures)
 
 
 def test_a_sequence_is_offered_nothing_that_hits(job):

@@ -38,6 +38,7 @@ class Field(NamedTuple):
 # the digits of a file, and of the two ways in which a figure is computed
 DIGITS = 1e-9
 CLEARANCE = 0.02  # [mm]: it is found to 0.01 mm
+WAY = ("lead_in", "approach", "retract")  # that a clearance covers
 ANYWHERE = 1e6  # [mm]: where a distance is the least along a whole leg, nothing says where on it that is
 # of the least rate: planning narrows a dip down until it falls by less than 1e-6 of the rate between samples
 DIP = 2e-6
@@ -97,6 +98,7 @@ HEAD_FIELDS: dict[str, Field] = {
     "transitions.around.standoff_mm": _EXACT,
     "transitions.around.between": _EXACT,
     "transitions.around.certified": _EXACT,
+    **{f"transitions.around.{part}_mm": _EXACT for part in WAY},
     "transitions.findings": Field("finding"),
     "cycle_time_s": Field("figure", DIGITS, 1e-6),
     "findings": Field("finding"),
@@ -173,6 +175,7 @@ HOLE_FIELDS: dict[str, Field] = {
     "clearance.standoff_mm": Field("figure", absolute=ANYWHERE),
     "clearance.between": _EXACT,
     "clearance.certified": Field("check"),
+    **{f"clearance.{part}_mm": Field("figure", DIGITS, 1e-6, optional=True) for part in WAY},
     "cycle_time_s": Field("figure", DIGITS, 1e-6, optional=True),
     "strokes": Field("figure", optional=True),
     "strokes.depth_mm": Field("figure", DIGITS),

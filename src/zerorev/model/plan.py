@@ -47,6 +47,7 @@ LegName = Literal["plunge", "target", "retract"]
 Strokes = Literal["asked", "deepest"]
 
 HOLES_NAMED = 6  # in one sentence; more are counted
+NOT_COVERED = "it is not covered, or this is a move between holes"
 
 
 def named_holes(ids: Iterable[str]) -> str:
@@ -189,6 +190,15 @@ class Clearance:
         bool,
         Switch("whether it is proven that no body comes nearer, nor that two of the arm's touch, between samples, too"),
     ]
+    lead_in: Annotated[
+        float | None, Figure("lead-in that is covered", MM, least=0, null=None, none=NOT_COVERED, added=True)
+    ] = None
+    approach: Annotated[
+        float | None, Figure("approach that is covered", MM, least=0, null=None, none=NOT_COVERED, added=True)
+    ] = None
+    retract: Annotated[
+        float | None, Figure("retract that is covered", MM, least=0, null=None, none=NOT_COVERED, added=True)
+    ] = None
 
 
 @dataclass(frozen=True)

@@ -33,13 +33,19 @@ def clearance_of(drilling: Drilling, settings: Settings, motion: Motion) -> Clea
     if setting is None:
         return None
     pairs = setting.drilled & setting.against
-    found, _ = nearest_of(setting, drilling.robot, _all_paths(drilling, settings, motion), pairs)
-    return None if found is None else Clearance(found.distance, found.standoff, found.between, certified=found.proven)
+    way = Way.of(drilling, motion, settings)
+    found, _ = nearest_of(setting, drilling.robot, _all_paths(drilling, settings, motion, way), pairs)
+    if found is None:
+        return None
+    return Clearance(
+        found.distance, found.standoff, found.between, certified=found.proven, lead_in=way.lead_in.length,
+        approach=way.approach.length, retract=way.retract.length,
+    )  # fmt: skip
 
 
-def _all_paths(drilling: Drilling, settings: Settings, motion: Motion) -> Iterator[Path]:
+def _all_paths(drilling: Drilling, settings: Settings, motion: Motion, way: Way) -> Iterator[Path]:
     """The legs, the corner, and the way to them and away."""
-    profile, branch, way = motion.profile, motion.branch, Way.of(drilling, motion, settings)
+    profile, branch = motion.profile, motion.branch
     yield from paths_of(drilling, settings, profile, branch)
     first, last = way.ahead, way.after
     start = (way.surface + way.lead_in.length, first.psi)

@@ -297,7 +297,12 @@ def _clearance(drilling: Drilling, settings: Settings, stated: HolePlan) -> Clea
     """How near the stated motion comes to what stands around; whether that is proven the check of the motion says."""
     assert stated.motion is not None
     found = clearance_of(drilling, settings, stated.motion)
-    return found if found is None or stated.clearance is None else replace(found, certified=stated.clearance.certified)
+    said = stated.clearance
+    if found is None or said is None:
+        return found
+    found = replace(found, certified=said.certified)
+    # of an older plan it is not known how much of the way is covered
+    return replace(found, lead_in=None, approach=None, retract=None) if said.lead_in is None else found
 
 
 def _with_gap(stated: Optimality | None, found: Optimality | None, score: Score | None) -> Optimality | None:

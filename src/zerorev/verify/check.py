@@ -29,6 +29,7 @@ from zerorev.verify.measure import reversals, reversals_through
 from zerorev.verify.mix import mix_holds
 from zerorev.verify.path import Track, around, blend, follow, joined, legs, residual
 from zerorev.verify.sound import continuity, greatest_step, least_room, limit_distances, limits, on_the_axis, reach
+from zerorev.verify.way import corner_moves, way_as_asked, way_tracks
 
 __all__ = ["known_as_checked", "subject", "verify_hole", "verify_plan"]
 
@@ -111,10 +112,14 @@ def verify_hole(
         on_blends += curve.psi.size
 
     failures += corner_keeps(robot, tool, settings, hole_plan)
+    pieces = [piece for _, piece in examined]
+    if hole_plan.clearance is not None:
+        pieces += way_tracks(robot, tool, hole, motion, hole_plan.clearance)
+        failures += way_as_asked(robot, settings, hole_plan.clearance)
     failures += clearance_claimed(
         robot, tool, settings, hole_plan.clearance,
-        [(piece.path.standoff, piece.path.psi, piece.joints) for _, piece in examined],
-        planned=hole_plan.status == "planned",
+        [(piece.path.standoff, piece.path.psi, piece.joints) for piece in pieces],
+        corner_moves(robot, tool, hole, motion, hole_plan.corner), planned=hole_plan.status == "planned",
     )  # fmt: skip
     figures = []
     for where, piece in examined:

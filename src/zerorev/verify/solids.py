@@ -118,7 +118,7 @@ def nearest(heap, one, T, other, beyond):  # type: ignore[no-untyped-def]
     """Distance of two solids, or `beyond` where it is more.
 
     Args:
-        heap: `verify.around.Heap`.
+        heap: `verify.heaps.Heap`.
         one: number of the solid that is moved.
         T: by this, into the frame of the other: rotation row by row, then the place [m], shape (12,).
         other: number of the other.
@@ -205,8 +205,8 @@ def least_of_samples(solids, heap, joints, wanted, best):  # type: ignore[no-unt
     """The least distance of pairs at samples.
 
     Args:
-        solids: `verify.around.Solids`.
-        heap: `verify.around.Heap`.
+        solids: `verify.scene.Solids`.
+        heap: `verify.heaps.Heap`.
         joints: controller angles [rad], shape (N, 6).
         wanted: which pairs count, shape (K,).
         best: distances above it do not matter [m].
@@ -238,8 +238,8 @@ def held(solids, heap, joints, standoff, psi, bend, wanted, least):  # type: ign
     and turns about it. Where that does not do, the part is halved.
 
     Args:
-        solids: `verify.around.Solids`.
-        heap: `verify.around.Heap`.
+        solids: `verify.scene.Solids`.
+        heap: `verify.heaps.Heap`.
         joints: controller angles [rad], shape (N, 6); of two samples the joints between are in proportion.
         standoff: [m], shape (N,); of no size: the motion is not one along a drill axis.
         psi: [rad], shape (N,), likewise.
