@@ -252,7 +252,7 @@ def grouped(found: Sequence[Finding]) -> list[Said]:
 
 def table_rows(plan: Plan, hole: HolePlan, number: int) -> list[Row]:
     """A hole as it stands in the table, drilled as the `number`-th; under it its strokes, where there are several."""
-    strokes = [_row(plan, answer, "", in_air)._replace(id=name.strip()) for name, answer, in_air in stroke_lines(hole)]
+    strokes = [_row(plan, answer, "", in_air)._replace(id=name) for name, answer, in_air in stroke_lines(hole)]
     return [_row(plan, hole, f"{number}", 0), *strokes]
 
 

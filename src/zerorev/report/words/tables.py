@@ -64,7 +64,9 @@ def plan_table(plan: Plan) -> Table:
         table.add_column(Text(HEADING), justify="right")
     table.add_column(Text("verified"))
     for hole in plan.holes:
-        for name, answer, in_air in [(hole.hole.id, hole, 0), *stroke_lines(hole)]:
+        strokes = [(f"  {name}, {answer.hole.depth * 1e3:.6g} mm", answer, in_air) for name, answer, in_air in
+                   stroke_lines(hole)]  # fmt: skip
+        for name, answer, in_air in [(hole.hole.id, hole, 0), *strokes]:
             *cells, verdict = _cells(plan, answer, in_air)
             lost = [Text(lost_motion_cell(answer.lost_motion))] if weighed else []
             table.add_row(Text(name), *cells, *lost, verdict)
@@ -73,10 +75,7 @@ def plan_table(plan: Plan) -> Table:
 
 def stroke_lines(hole: HolePlan) -> list[tuple[str, HolePlan, int]]:
     """Of each stroke of a hole of several: how its line is called, its answer, the reversals in the air before it."""
-    return [
-        (f"  stroke {n}, {stroke.answer.hole.depth * 1e3:.6g} mm", stroke.answer, stroke.reversals_in_air)
-        for n, stroke in enumerate(hole.strokes, 1)
-    ]
+    return [(f"stroke {n}", stroke.answer, stroke.reversals_in_air) for n, stroke in enumerate(hole.strokes, 1)]
 
 
 def _cells(plan: Plan, hole: HolePlan, in_air: int) -> list[Text]:
