@@ -12,6 +12,7 @@ from zerorev.errors import InputError
 from zerorev.files.io import job_from_text, read_job
 from zerorev.files.job_data import job_files
 from zerorev.model._arrays import rotation_rpy, transform
+from zerorev.model.cycle import Cycle
 from zerorev.model.hole import Hole
 from zerorev.model.job import Job, Settings
 from zerorev.model.profile import Profile
@@ -26,7 +27,7 @@ def same(one: Job, other: Job) -> None:
     for a, b in zip(one.holes, other.holes, strict=True):
         for name in ("target", "direction", "psi_zero", "depth"):
             np.testing.assert_allclose(getattr(a, name), getattr(b, name), atol=1e-11)
-        assert a.branch == b.branch
+        assert (a.branch, a.group, a.cycle) == (b.branch, b.group, b.cycle)
         assert (a.profile is None) == (b.profile is None)
         if a.profile is not None:
             np.testing.assert_allclose(a.profile.standoff, b.profile.standoff, atol=1e-12)
@@ -53,7 +54,8 @@ def test_any_reference_and_frame_and_a_given_motion(robot, tool, reference):
     job = replace(job, psi_reference=None) if reference is None else job
     profile = Profile.straight(0.03, 0.1, 0.2, 0.4)
     second = replace(job.holes[0], id="b", profile=profile, branch=3)
-    job = replace(job, holes=(*job.holes, second))
+    third = replace(job.holes[0], id="c", group="rib", cycle=Cycle("peck", 0.01, dwell=0.2))
+    job = replace(job, holes=(*job.holes, second, third))
     same(job, job_from_text(job_files(job)["my_job.yaml"], "y.yaml"))
 
 

@@ -11,6 +11,7 @@ from zerorev.errors import InputError
 from zerorev.files.conversion import frame_data, robot_data, settings_data, tool_data
 from zerorev.files.io import read_robot, robot_names
 from zerorev.files.solids import around_data
+from zerorev.files.stated_forms import data_of
 from zerorev.files.units import deg, mm, plain
 from zerorev.files.yaml_text import yaml_text
 from zerorev.model._arrays import Array
@@ -67,8 +68,13 @@ def _hole_data(hole: Hole, T_base_part: Array) -> dict[str, Any]:
     }
     if hole.profile is not None:
         data |= {"psi_deg": deg(hole.profile.psi), "standoff_mm": mm(hole.profile.standoff)}
-    branch = {} if hole.branch is None else {"branch": hole.branch}
-    return data | branch | ({"group": hole.group} if hole.group else {})
+    if hole.branch is not None:
+        data["branch"] = hole.branch
+    if hole.group:
+        data["group"] = hole.group
+    if hole.cycle is not None:
+        data["cycle"] = data_of(hole.cycle)
+    return data
 
 
 def _reference(job: Job) -> str | list[float]:
