@@ -60,7 +60,7 @@ def _numbers(robot: Robot) -> dict[str, Any]:
 def _hole_data(hole: Hole, T_base_part: Array) -> dict[str, Any]:
     """A hole in the part frame."""
     R, origin = T_base_part[:3, :3], T_base_part[:3, 3]
-    data = {
+    data: dict[str, Any] = {
         "id": hole.id,
         "target_mm": mm(R.T @ (hole.target - origin)).round(9) + 0.0,
         "direction": R.T @ hole.direction,
