@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import zerorev as zr
+from oracles.page_moves import DRAWN, MOVES
 from zerorev.cli import main
 from zerorev.cli.common import FINE
 from zerorev.files.io import job_from_text, plan_from_text
@@ -24,17 +25,6 @@ pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
 
 DEMO = (resources.files("zerorev.web") / "demo.yaml").read_text(encoding="utf-8")
-# a mouse says where it is 60 times a second, however busy the page is; the driver's own would wait for each to be drawn
-MOVES = """async ([x, y, reach, moves]) => {
-    const map = document.querySelector('[data-testid="twist-map"] svg[role="group"]');
-    for (let n = 1; n <= moves; n++) {
-        const clientY = y + reach * Math.sin(n / moves * 7.5 * Math.PI);
-        map.dispatchEvent(new PointerEvent("pointermove", { clientX: x, clientY, pointerId: 1, bubbles: true }));
-        await new Promise((after) => setTimeout(after, 16));
-    }
-}"""
-DRAWN = """window.drawn = []; window.addEventListener("zerorev-drawn", (event) => window.drawn.push(event.detail))"""
-
 # how often the map has got a size: once as soon as it is watched
 SIZED = """() => {
     window.sized = 0;

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from oracles.page_looks import CUT
+from oracles.places import ROOT
 
 pytestmark = pytest.mark.xdist_group("browser")
 expect = pytest.importorskip("playwright.sync_api", reason="the tests in a browser need playwright").expect
@@ -83,6 +84,13 @@ def is_drawn(page, hole):
     expect(page.get_by_test_id("map-cover")).to_be_hidden()
     expect(page.get_by_test_id("holes").get_by_text(hole)).to_be_visible()
     page.wait_for_function(f"() => {CELL}.track")
+
+
+def test_nothing_is_cut_where_something_stands_around(serve, open_page):
+    page = open_page(serve(ROOT / "examples" / "jobs" / "panel_clamped" / "job.yaml"))
+    expect(page.get_by_test_id("clearance")).to_have_text("45.27", timeout=120_000)
+    is_drawn(page, "R0C0")
+    in_every_size(page)
 
 
 def test_nothing_is_cut_nor_hidden_in_any_size(demo_page, tmp_path):

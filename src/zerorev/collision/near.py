@@ -6,7 +6,7 @@ holds where no joint turns round on it, so lines are cut where one does.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.collision.arms import Setting
-from zerorev.kernels import bodies
 from zerorev.kernels import clearance as kernels
 from zerorev.kernels.arm import flip_sign
 from zerorev.kernels.field import rates
@@ -28,15 +27,12 @@ __all__ = [
     "EXACT",
     "Nearest",
     "Path",
-    "Points",
     "blend_lines",
     "first_hit",
     "legs_lack",
     "lines",
     "moves",
     "nearest_of",
-    "poses_apart",
-    "poses_keep",
 ]
 
 EXACT = 1e-5  # [m]
@@ -61,13 +57,6 @@ class Path(NamedTuple):
     plane: TwistPlane
     branch: int
     ends: Array
-
-
-class Points(NamedTuple):
-    """The nearest points of two solids: base frame [m], shape (3,) each, on their lines or hulls without the radii."""
-
-    one: Array
-    other: Array
 
 
 class Nearest(NamedTuple):
@@ -187,52 +176,6 @@ def legs_lack(
     return out
 
 
-def poses_keep(setting: Setting, drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Mask:
-    """Whether poses keep the clearance, shape (n,).
-
-    Args:
-        setting: the bodies and what stands around.
-        drilling: robot, tool and hole.
-        branch: 0..7.
-        standoff: [m], shape (n,).
-        psi: [rad], shape (n,).
-    """
-    out = np.empty(standoff.size, dtype=np.bool_)
-    _ask(bodies.poses_keep, setting, drilling, branch, standoff, psi, out)
-    return out
-
-
-def poses_apart(setting: Setting, drilling: Drilling, branch: int, standoff: Array, psi: Array) -> Array:
-    """How much farther all pairs are apart at poses than they have to be [m], shape (n,); NaN out of reach.
-
-    Args:
-        setting: the bodies and what stands around.
-        drilling: robot, tool and hole.
-        branch: 0..7.
-        standoff: [m], shape (n,).
-        psi: [rad], shape (n,).
-    """
-    out = np.empty(standoff.size)
-    _ask(bodies.poses_apart, setting, drilling, branch, standoff, psi, out)
-    return out
-
-
-def _ask(
-    kernel: Callable[..., None],
-    setting: Setting,
-    drilling: Drilling,
-    branch: int,
-    standoff: Array,
-    psi: Array,
-    out: Array | Mask,
-) -> None:
-    """Ask a kernel of poses, one answer each."""
-    kernel(
-        drilling.robot.arm, drilling.plane, branch, np.ascontiguousarray(standoff), np.ascontiguousarray(psi),
-        setting.arms, setting.drilled, setting.desk(), out,
-    )  # fmt: skip
-
-
 def first_hit(setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask) -> Nearest | None:
     """Where a motion does not keep the clearance, or cannot be proven to; None where it is proven to keep it.
 
@@ -266,10 +209,8 @@ def first_hit(setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask
     return None
 
 
-def nearest_of(
-    setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask
-) -> tuple[Nearest | None, Points | None]:
-    """Where a motion comes nearest, to `EXACT`, and the nearest points there; None where no pair counts.
+def nearest_of(setting: Setting, robot: Robot, paths: Iterable[Path], pairs: Mask) -> Nearest | None:
+    """Where a motion comes nearest, to `EXACT`; None where no pair counts.
 
     Args:
         setting: the bodies and what stands around.
@@ -277,12 +218,11 @@ def nearest_of(
         paths: of the motion.
         pairs: which count, shape (K,).
     """
-    best, desk = np.full(9, np.inf), setting.desk()
+    best, desk = np.full(3, np.inf), setting.desk()
     found: Nearest | None = None
-    points: Points | None = None
     proven = True
     if not pairs.any():
-        return None, None
+        return None
     for number, path in enumerate(paths):
         verdict = kernels.nearest(
             robot.arm, path.plane, path.branch, path.ends, setting.arms, pairs, setting.lever_w, EXACT, desk, best
@@ -292,19 +232,8 @@ def nearest_of(
             continue
         share, pair = float(best[1]), int(best[2])
         found = Nearest(float(best[0]), setting.names(pair), _standoff(path, share), number, share, proven=True)
-        points = _points(setting, robot, path, share, pair, best[3:].reshape(2, 3))
-    return (None if found is None else found._replace(proven=proven)), points
+    return None if found is None else found._replace(proven=proven)
 
 
 def _standoff(path: Path, share: float) -> float | None:
     return None if path.branch < 0 else float(path.ends[0, 0] + share * (path.ends[1, 0] - path.ends[0, 0]))
-
-
-def _points(setting: Setting, robot: Robot, path: Path, share: float, pair: int, points: Array) -> Points:
-    """Points of the frame of a pair's second solid in the base frame."""
-    desk = setting.desk()
-    bodies.pose_of(robot.arm, path.plane, path.branch, path.ends, share, desk)
-    bodies.apart_at(setting.arms, pair, np.inf, desk)
-    T = desk.placed[setting.arms.pairs[pair, 1]]
-    one, other = points @ T[:9].reshape(3, 3).T + T[9:]
-    return Points(one, other)

@@ -11,7 +11,18 @@ from zerorev.kernels._jit import kernel, lean
 from zerorev.kernels.arm import solve_at
 from zerorev.kernels.solids import Room, Solids, between
 
-__all__ = ["DEEP", "SPANNED", "Arms", "Desk", "apart_at", "balls_apart", "desk", "pose_of", "poses_apart", "poses_keep"]
+__all__ = [
+    "DEEP",
+    "SPANNED",
+    "Arms",
+    "Desk",
+    "apart_at",
+    "balls_apart",
+    "desk",
+    "pose_of",
+    "poses_keep",
+    "poses_nearest",
+]
 
 Array = npt.NDArray[np.float64]
 Whole = npt.NDArray[np.int64]
@@ -273,8 +284,8 @@ def poses_keep(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # t
 
 
 @kernel
-def poses_apart(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # type: ignore[no-untyped-def]
-    """How much farther pairs of solids are apart at poses than they have to be, the least of them [m].
+def poses_nearest(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # type: ignore[no-untyped-def]
+    """What is nearest to what at poses.
 
     Args:
         arm: `ArmGeometry`.
@@ -283,18 +294,32 @@ def poses_apart(arm, plane, branch, standoff, psi, arms, wanted, desk, out):  # 
         standoff: [m], shape (n,).
         psi: [rad], shape (n,).
         arms: `Arms`.
-        wanted: which pairs, shape (K,).
+        wanted: which pairs count, shape (K,).
         desk: `Desk`.
-        out: out, shape (n,); NaN out of reach.
+        out: out, shape (n, 8): the distance [m], the pair, and the nearest points of its lines or hulls, base frame
+            [m]; NaN out of reach.
     """
-    path = np.zeros((2, 8))
+    path, pairs, last = np.zeros((2, 8)), arms.pairs.shape[0], 0
     for n in range(standoff.shape[0]):
         path[0, 0], path[0, 1], path[1, 0], path[1, 1] = standoff[n], psi[n], standoff[n], psi[n]
+        for c in range(8):
+            out[n, c] = np.nan
         if not pose_of(arm, plane, branch, path, 0.0, desk):
-            out[n] = np.nan
             continue
-        out[n] = np.inf
         balls_apart(arms, wanted, desk)
-        for k in range(arms.pairs.shape[0]):
-            if wanted[k] and desk.away[k] < arms.least[k] + out[n]:
-                out[n] = min(out[n], apart_at(arms, k, arms.least[k] + out[n], desk) - arms.least[k])
+        least, first = np.inf, last
+        for turn in range(pairs):
+            k = (first + turn) % pairs  # what was nearest before comes first: the others are soon known to be farther
+            if not wanted[k] or desk.away[k] >= least:
+                continue
+            found = apart_at(arms, k, least, desk)
+            if found >= least:
+                continue
+            least = found
+            out[n, 0], out[n, 1] = found, k
+            last = k
+            T, A = desk.placed[arms.pairs[k, 1]], desk.room.A
+            for point in range(2):
+                x, y, z = A[4 + point, 0], A[4 + point, 1], A[4 + point, 2]
+                for i in range(3):
+                    out[n, 2 + 3 * point + i] = T[9 + i] + T[3 * i] * x + T[3 * i + 1] * y + T[3 * i + 2] * z

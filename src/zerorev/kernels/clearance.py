@@ -232,9 +232,8 @@ def nearest(arm, plane, branch, path, arms, wanted, lever_w, within, desk, best)
         lever_w: distance of the wrist centre from the drill axis [m].
         within: to which it is found [m].
         desk: `Desk`.
-        best: in and out, shape (9,): the least distance so far [m], the share of the path where it is, the pair, and
-            the nearest points of its lines or hulls in the frame of the second solid [m]; the share is NaN where
-            nothing nearer was found.
+        best: in and out, shape (3,): the least distance so far [m], the share of the path where it is, and the pair;
+            the share is NaN where nothing nearer was found.
 
     Returns:
         FREE; or UNDECIDED, where it is not found, also out of reach.
@@ -249,7 +248,7 @@ def nearest(arm, plane, branch, path, arms, wanted, lever_w, within, desk, best)
         balls_apart(arms, wanted, desk)
         for k in range(pairs):
             if wanted[k] and desk.away[k] < best[0]:
-                _note(arms, k, float(end), apart_at(arms, k, best[0], desk), desk, best)
+                _note(k, float(end), apart_at(arms, k, best[0], desk), best)
     top = FIRST
     while top > 0:
         top -= 1
@@ -268,7 +267,7 @@ def nearest(arm, plane, branch, path, arms, wanted, lever_w, within, desk, best)
             found = desk.away[k]
             if found < best[0] + moved:
                 found = apart_at(arms, k, best[0] + moved, desk)
-                _note(arms, k, m, found, desk, best)
+                _note(k, m, found, best)
             if found >= best[0] - within + moved and narrow:
                 desk.open[top, k] = False
             else:
@@ -282,9 +281,7 @@ def nearest(arm, plane, branch, path, arms, wanted, lever_w, within, desk, best)
 
 
 @lean
-def _note(arms, k, share, found, desk, best):  # type: ignore[no-untyped-def]
+def _note(k, share, found, best):  # type: ignore[no-untyped-def]
     """Keep a distance that is less than the least so far."""
     if found < best[0]:
         best[0], best[1], best[2] = found, share, k
-        for c in range(3):
-            best[3 + c], best[6 + c] = desk.room.A[4, c], desk.room.A[5, c]

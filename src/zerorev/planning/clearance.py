@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 from zerorev.collision.arms import Setting, setting_of
 from zerorev.collision.motions import paths_of
@@ -13,9 +14,21 @@ from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
 from zerorev.program.ways import Way
 
-__all__ = ["clearance_findings", "clearance_of", "near_words", "none_clear"]
+__all__ = ["Approached", "approached", "clearance_findings", "clearance_of", "near_words", "none_clear", "too_near"]
 
 SLACK = 2e-5  # [m] to which a least distance is known
+
+
+class Approached(NamedTuple):
+    """Where a hole's own moves come nearest to what stands around.
+
+    Attributes:
+        clearance: how near, and where.
+        psi: spin there [rad].
+    """
+
+    clearance: Clearance
+    psi: float
 
 
 def clearance_of(drilling: Drilling, settings: Settings, motion: Motion) -> Clearance | None:
@@ -29,18 +42,32 @@ def clearance_of(drilling: Drilling, settings: Settings, motion: Motion) -> Clea
     Returns:
         None where nothing is known to stand around. It is called certified; the check holds it to that.
     """
+    found = approached(drilling, settings, motion)
+    return None if found is None else found.clearance
+
+
+def approached(drilling: Drilling, settings: Settings, motion: Motion) -> Approached | None:
+    """Where a hole's own moves come nearest, as `clearance_of`; a few milliseconds.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: how, with what stands around.
+        motion: of the hole.
+    """
     setting = setting_of(drilling.robot, drilling.tool, settings)
     if setting is None:
         return None
-    pairs = setting.drilled & setting.against
     way = Way.of(drilling, motion, settings)
-    found, _ = nearest_of(setting, drilling.robot, _all_paths(drilling, settings, motion, way), pairs)
+    paths = list(_all_paths(drilling, settings, motion, way))
+    found = nearest_of(setting, drilling.robot, paths, setting.drilled & setting.against)
     if found is None:
         return None
-    return Clearance(
+    begin, end = paths[found.path].ends[:, 1].tolist()
+    near = Clearance(
         found.distance, found.standoff, found.between, certified=found.proven, lead_in=way.lead_in.length,
         approach=way.approach.length, retract=way.retract.length,
     )  # fmt: skip
+    return Approached(near, begin + found.share * (end - begin))
 
 
 def _all_paths(drilling: Drilling, settings: Settings, motion: Motion, way: Way) -> Iterator[Path]:
@@ -61,18 +88,26 @@ def clearance_findings(drilling: Drilling, settings: Settings, answer: HolePlan)
         settings: how.
         answer: of the hole, with a motion.
     """
-    near, hole = answer.clearance, answer.hole.id
+    said = too_near(answer.clearance, settings)
+    if said is not None:
+        yield Finding("error", "collision", said, answer.hole.id)
+
+
+def too_near(near: Clearance | None, settings: Settings) -> str | None:
+    """That a motion comes nearer to something than is asked for, in words; None where it does not.
+
+    Args:
+        near: how near it comes; None: nothing stands around.
+        settings: that ask.
+    """
     if near is None or near.least >= settings.clearance - SLACK:
-        return
+        return None
     body, other = near.between
     where = "" if near.standoff is None else f", {near.standoff * 1e3:.2f} mm out"
     if near.least <= SLACK:
-        yield Finding("error", "collision", f"the {body} touches {other}{where}", hole)
-        return
+        return f"the {body} touches {other}{where}"
     wanted = f"{settings.clearance * 1e3:g} mm are asked for (clearance_mm)"
-    yield Finding(
-        "error", "collision", f"the {body} comes within {near.least * 1e3:.2f} mm of {other}{where}, and {wanted}", hole
-    )
+    return f"the {body} comes within {near.least * 1e3:.2f} mm of {other}{where}, and {wanted}"
 
 
 def near_words(setting: Setting, hit: Nearest) -> str:

@@ -57,7 +57,7 @@ class Around:
 
     def clearance(self, joints: Array) -> Clearance | None:
         """The least distance on such moves, proven by the check's own code, too; None where nothing stands around."""
-        found, _ = nearest_of(self.setting, self.robot, moves(joints), self.setting.against)
+        found = nearest_of(self.setting, self.robot, moves(joints), self.setting.against)
         if found is None:
             return None
         claimed = Clearance(found.distance, None, found.between, certified=True)

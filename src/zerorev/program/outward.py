@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from zerorev.collision.arms import Setting
-from zerorev.collision.near import poses_keep
+from zerorev.collision.poses import poses_keep
 from zerorev.model._arrays import Array
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.joint_path import FULL_TURN, joints_along, outward_rates

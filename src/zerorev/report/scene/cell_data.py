@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from zerorev.files.units import deg, mm
 from zerorev.model._arrays import Array
@@ -23,7 +21,9 @@ from zerorev.motion.joint_path import joint_path
 from zerorev.motion.kinematics import tcp_pose
 from zerorev.motion.links import chain
 from zerorev.report.scene.arm_shapes import Solid, arm_solids, rings, tool_solids
+from zerorev.report.scene.clearance_data import nearest_data
 from zerorev.report.scene.motion_look import Mark, held, look, signed_distance
+from zerorev.report.scene.packing import in_mm, packed, pose_in_mm
 from zerorev.report.scene.palette import BASELINE_COLOUR, CANNOT_RUN, JOINT_COLOURS, REVERSAL_COLOURS
 from zerorev.report.scene.skeleton import home
 from zerorev.report.scene.urdf_meshes import Mesh
@@ -54,11 +54,11 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
         "robot": f"{robot.manufacturer} {robot.model}".strip() or robot.name,
         "tool": tool.name,
         "names": robot.joint_names,
-        "chain": [{**joint._asdict(), "place": _mm(joint.place)} for joint in chain(robot)],
+        "chain": [{**joint._asdict(), "place": in_mm(joint.place)} for joint in chain(robot)],
         "links": links,
         "tool_solids": [_solid(solid) for solid in tool_solids(robot, tool)],
-        "rings": [{"place": _mm(place), "radius": _mm(radius)} for place, radius in rings(robot)],
-        "tip": _mm(tool.T_flange_tcp[:3, 3]),
+        "rings": [{"place": in_mm(place), "radius": in_mm(radius)} for place, radius in rings(robot)],
+        "tip": in_mm(tool.T_flange_tcp[:3, 3]),
         "home_deg": deg(home(robot)).tolist(),
         "j3_less_j2": robot.display.j3_less_j2,
         "shown_note": shown_note(robot),
@@ -69,24 +69,28 @@ def arm_data(robot: Robot, tool: Tool, meshes: Sequence[Sequence[Mesh]] | None =
     }  # fmt: skip
 
 
-def holes_data(holes: Sequence[Hole], T_base_part: Array, answers: Mapping[str, HolePlan]) -> dict[str, Any]:
+def holes_data(
+    holes: Sequence[Hole], T_base_part: Array, answers: Mapping[str, HolePlan], *, shaped: bool = False
+) -> dict[str, Any]:
     """The part frame, the faces that the holes begin on, and the holes with what is known of each.
 
     Args:
         holes: of a job.
         T_base_part: part frame, shape (4, 4).
         answers: by the hole's id.
+        shaped: whether the shape of the part is known and shown; then no plates stand for it.
     """
     target, direction = (np.array([getattr(hole, name) for hole in holes]) for name in ("target", "direction"))
     depth = np.array([hole.depth for hole in holes])
     return {
-        "part": _mm_pose(T_base_part),
+        "part": pose_in_mm(T_base_part),
         "ids": [hole.id for hole in holes],
         "target_mm": packed(mm(target)),
         "direction": packed(direction),
         "depth_mm": packed(mm(depth)),
         "reversals": reversals_data(holes, answers),
-        "plates": _plates(target, direction, depth, T_base_part),
+        "plates": [] if shaped else _plates(target, direction, depth, T_base_part),
+        "shaped": shaped,
     }
 
 
@@ -112,13 +116,19 @@ def motion_data(
         settings: turns of the joints, feeds.
         samples: how many points, about.
     """
-    planned = track_data(drilling, profile, branch, settings, samples)
+    planned = track_data(drilling, profile, branch, settings, samples, near=True)
     baseline = track_data(drilling, held(profile), branch, settings, samples)
     return {"hole": drilling.hole.id, "planned": planned, "held": baseline}
 
 
 def track_data(
-    drilling: Drilling, profile: Profile, branch: int, settings: Settings, samples: int = SAMPLES
+    drilling: Drilling,
+    profile: Profile,
+    branch: int,
+    settings: Settings,
+    samples: int = SAMPLES,
+    *,
+    near: bool = False,
 ) -> dict[str, Any] | None:
     """One motion to be played, drawn as far as it can be; None where the branch reaches no point of it.
 
@@ -128,6 +138,7 @@ def track_data(
         branch: 0..7.
         settings: turns of the joints, feeds.
         samples: how many points, about; reversals are always among them.
+        near: whether it is shown, too, what of the arm is nearest to what stands around.
     """
     looked = look(drilling, profile, branch, settings)
     corner = profile.distance[profile.corner]
@@ -158,6 +169,7 @@ def track_data(
         "faults_mm": [[float(mm(fault.start)), float(mm(fault.end))] for fault in looked.faults],
         "runs": looked.runs,
         "why": looked.why,
+        "nearest": nearest_data(drilling, settings, branch, path.standoff, path.psi) if near else None,
     }
 
 
@@ -180,23 +192,8 @@ def slice_data(
     }  # fmt: skip
 
 
-def packed(values: npt.ArrayLike, kind: str = "<f4") -> str:
-    """Numbers as base64 of little-endian binary, row by row."""
-    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
-
-
-def _mm(value: npt.ArrayLike) -> Any:
-    return np.round(mm(value), 6).tolist()
-
-
-def _mm_pose(T: Array) -> list[list[float]]:
-    """The upper three rows, the last column in mm."""
-    rows: list[list[float]] = np.hstack([T[:3, :3], mm(T[:3, 3:])]).tolist()
-    return rows
-
-
 def _solid(solid: Solid) -> dict[str, Any]:
-    return {key: value if isinstance(value, str) else _mm(value) for key, value in asdict(solid).items()}
+    return {key: value if isinstance(value, str) else in_mm(value) for key, value in asdict(solid).items()}
 
 
 def _mesh(mesh: Mesh) -> dict[str, Any]:
@@ -245,5 +242,5 @@ def _plates(target: Array, direction: Array, depth: Array, T_base_part: Array) -
         low[2], high[2] = face[mine].min(), local[:, 2].max() + 0.004
         pose = np.eye(4)
         pose[:3, :3], pose[:3, 3] = R.T, (low + high) / 2 @ R
-        plates.append({"pose": _mm_pose(pose), "size_mm": _mm(high - low)})
+        plates.append({"pose": pose_in_mm(pose), "size_mm": in_mm(high - low)})
     return plates

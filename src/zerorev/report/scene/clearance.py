@@ -1,4 +1,4 @@
-"""The data behind a picture of clearances: solids, the nearest points at a pose, and the zone of the twist plane."""
+"""What of the twist plane comes too near to what stands around the arm."""
 
 from __future__ import annotations
 
@@ -7,79 +7,63 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from zerorev.collision.arms import Setting, setting_of
-from zerorev.collision.near import moves, nearest_of, poses_apart
+from zerorev.collision.arms import setting_of
+from zerorev.collision.poses import poses_keep
 from zerorev.model._arrays import Array
-from zerorev.model.body import Body, Obstacle
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
+from zerorev.report.scene.regions import Region, regions
+from zerorev.report.scene.twist_map import SHAPE
 
-__all__ = ["NearestNow", "clearance_zone", "nearest_at", "solids_of"]
+__all__ = ["ClearanceZone", "clearance_zone"]
 
 
 @dataclass(frozen=True)
-class NearestNow:
-    """What is nearest to what at a pose.
+class ClearanceZone:
+    """Where a branch does not keep the clearance, nor two bodies of the arm apart, over the stroke and a turn of spin.
 
     Attributes:
-        distance: [m].
-        between: the body, and what it is near to.
-        points: on the line of a capsule, or in a box or a triangle, of both: base frame [m], shape (2, 3).
+        branch: 0..7.
+        clearance: that is asked for [m].
+        standoff: [m], shape (S,).
+        psi: [rad], shape (P,), from -pi to pi.
+        near: whether it is not kept, shape (S, P); False out of reach.
+        region: its outlines.
     """
 
-    distance: float
-    between: tuple[str, str]
-    points: Array
-
-
-def solids_of(drilling: Drilling, settings: Settings) -> tuple[tuple[Body, ...], tuple[Obstacle, ...]]:
-    """The bodies of the arm with its tool, and what stands around; both empty where neither is stated.
-
-    A body moves with its link: T_base_link (`motion.links.link_frames`; link 0 is the base) times its `T_link`.
-
-    Args:
-        drilling: robot, tool and hole.
-        settings: with what stands around.
-    """
-    setting = setting_of(drilling.robot, drilling.tool, settings)
-    return ((), ()) if setting is None else (setting.bodies, setting.obstacles)
-
-
-def nearest_at(drilling: Drilling, settings: Settings, joints: Array, *, at_hole: bool = True) -> NearestNow | None:
-    """The nearest points at a pose; None where nothing stands around.
-
-    Args:
-        drilling: robot, tool and hole.
-        settings: with what stands around.
-        joints: controller angles [rad], shape (6,).
-        at_hole: whether a hole is drilled, so that the drill may be in the part.
-    """
-    setting = setting_of(drilling.robot, drilling.tool, settings)
-    if setting is None:
-        return None
-    pairs = setting.against & (setting.drilled if at_hole else setting.all_pairs)
-    found, points = nearest_of(setting, drilling.robot, moves(np.stack([joints, joints])), pairs)
-    if found is None or points is None:
-        return None
-    return NearestNow(found.distance, found.between, np.stack([points.one, points.other]))
+    branch: int
+    clearance: float
+    standoff: Array
+    psi: Array
+    near: npt.NDArray[np.bool_]
+    region: Region
 
 
 def clearance_zone(
-    drilling: Drilling, settings: Settings, branch: int, standoff: npt.ArrayLike, psi: npt.ArrayLike
-) -> Array | None:
-    """How far the arm is from what stands around, less what is asked for, at points of the twist plane [m].
-
-    Below 0 the clearance is not kept; NaN out of reach. None where nothing is known to stand around.
+    drilling: Drilling, settings: Settings, branch: int, corner: float = 0.0, shape: tuple[int, int] = SHAPE
+) -> ClearanceZone | None:
+    """The zone of a hole and a branch, as `twist_map` spans it; some tens of milliseconds.
 
     Args:
-        drilling: robot, tool and hole.
+        drilling: robot, tool and hole: whose stroke it spans.
         settings: with what stands around, and the clearance.
         branch: 0..7.
-        standoff: [m], any shape.
-        psi: [rad], a shape that goes with it.
+        corner: stand-off of the motion's corner [m], below 0 where it is placed deeper.
+        shape: how many stand-offs and spins.
+
+    Returns:
+        None where nothing is known to stand around.
     """
-    setting: Setting | None = setting_of(drilling.robot, drilling.tool, settings)
+    setting = setting_of(drilling.robot, drilling.tool, settings)
     if setting is None:
         return None
-    s, p = np.broadcast_arrays(np.asarray(standoff, dtype=float), np.asarray(psi, dtype=float))
-    return poses_apart(setting, drilling, branch, s.ravel(), p.ravel()).reshape(s.shape)
+
+    def zone_at(s: Array, p: Array) -> npt.NDArray[np.uint8]:
+        reached = ~np.isnan(drilling.angles(s, p)[..., branch, 0])
+        return (reached & ~poses_keep(setting, drilling, branch, s, p)).astype(np.uint8)
+
+    standoff, psi = np.linspace(corner, drilling.hole.depth, shape[0]), np.linspace(-np.pi, np.pi, shape[1])
+    s, p = np.meshgrid(standoff, psi, indexing="ij")
+    near = zone_at(s.ravel(), p.ravel()).reshape(shape)
+    (region,) = regions(standoff, psi, near, (1,), zone_at)
+    return ClearanceZone(branch, settings.clearance, standoff, psi, near > 0, region)

@@ -10,7 +10,7 @@ import numpy as np
 from zerorev.files.units import deg, deg_per_mm, mm
 from zerorev.model._arrays import Array
 from zerorev.model.job import Settings
-from zerorev.model.plan import Event, Score
+from zerorev.model.plan import Event, Motion, Score
 from zerorev.model.profile import Profile
 from zerorev.model.robot import JointLimits, Robot
 from zerorev.motion.drilling import Drilling
@@ -69,6 +69,7 @@ class Look:
         marks: its reversals, in order of motion.
         margin: least rate of the joints that do not reverse [rad/m], by the settings' rule; None where there is none.
         meets_threshold: whether the margin is as the settings ask.
+        motion: with its joints, or None where it does not run.
     """
 
     runs: bool
@@ -78,6 +79,7 @@ class Look:
     marks: tuple[Mark, ...]
     margin: float | None
     meets_threshold: bool
+    motion: Motion | None = None
 
     @property
     def reversals(self) -> int | None:
@@ -123,7 +125,9 @@ def look(drilling: Drilling, profile: Profile, branch: int, settings: Settings) 
     steady = steady_rates(score, settings)
     meets = meets_threshold(score, settings)
     margin = float(steady.min()) if steady.size else None
-    return Look(True, "" if meets else _too_slow(drilling.robot, score, settings), (), score, marks, margin, meets)
+    return Look(
+        True, "" if meets else _too_slow(drilling.robot, score, settings), (), score, marks, margin, meets, found.motion
+    )
 
 
 def curves(drilling: Drilling, profile: Profile, branch: int, settings: Settings, samples: int = 200) -> Curves:

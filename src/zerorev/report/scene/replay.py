@@ -20,6 +20,7 @@ from zerorev.model.plan import HolePlan, Plan
 from zerorev.model.strokes import each_stroke
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene.cell_data import SAMPLES, arm_data, holes_data, motion_data
+from zerorev.report.scene.solids_data import solids_data
 from zerorev.report.scene.urdf_meshes import Mesh
 from zerorev.report.words.lost_motion import GUESSED, WHERE_IT_HOLDS, lost_motion_words
 from zerorev.report.words.tables import hole_findings, slowest
@@ -30,6 +31,7 @@ STATIC = Path(__file__).parent / "static"
 MODULES = (
     "cell.js",
     "cell_arm.js",
+    "cell_around.js",
     "cell_bar.js",
     "cell_copies.js",
     "cell_hands.js",
@@ -59,7 +61,13 @@ def replay_page(plan: Plan, ids: Sequence[str] | None = None, meshes: Sequence[S
     holes = list({motion.whole.hole.id: motion.whole for motion in chosen}.values())
     data: dict[str, Any] = {
         "arm": arm_data(plan.robot, plan.tool, meshes),
-        "scene": holes_data([each.hole for each in holes], plan.T_base_part, {each.hole.id: each for each in holes}),
+        "solids": solids_data(plan.robot, plan.tool, plan.settings),
+        "scene": holes_data(
+            [each.hole for each in holes],
+            plan.T_base_part,
+            {each.hole.id: each for each in holes},
+            shaped=plan.settings.surroundings.part is not None,
+        ),
         "holes": [_hole(plan, motion, samples) for motion in chosen],
         "note": f"Lost motion: {GUESSED} {WHERE_IT_HOLDS}" if any(each.answer.lost_motion for each in chosen) else "",
     }
@@ -158,6 +166,10 @@ def _figures(plan: Plan, answer: HolePlan) -> list[list[str]]:
         here, swapped = lost_motion_words(answer.lost_motion)
         rows.append(["lost motion at the tip [mm]", here, ""])
         rows.append(["... with the legs swapped [mm]", swapped, ""])
+    if (near := answer.clearance) is not None:
+        where = "" if near.standoff is None else f", {mm(near.standoff):.1f} mm out"
+        rows.append(["least clearance [mm]", _number(mm(near.least), 2), ""])
+        rows.append(["... between", f"{' and '.join(near.between)}{where}", ""])
     verified = answer.verified
     rows.append(["checked", "not yet" if verified is None else "passed" if verified.passed else "FAILED", ""])
     if answer.certificate is not None:

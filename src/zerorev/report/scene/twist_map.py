@@ -7,11 +7,10 @@ the mirror image. It is of one branch, or the envelope of all: at each point the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from contourpy import FillType, contour_generator
+from contourpy import contour_generator
 
 from zerorev.files.units import deg_per_mm
 from zerorev.model._arrays import Array
@@ -20,32 +19,17 @@ from zerorev.motion.critical import kappa_of, spread_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.report.scene.field import over_limits, stuck_joints
 from zerorev.report.scene.load_lines import LoadLine, load_lines
+from zerorev.report.scene.regions import Region, regions
 
-__all__ = ["LIMITED", "NEAR_SINGULAR", "OPEN", "UNREACHED", "Region", "SignLine", "TwistMap", "twist_map"]
+__all__ = ["LIMITED", "NEAR_SINGULAR", "OPEN", "UNREACHED", "SignLine", "TwistMap", "twist_map"]
 
 OPEN, NEAR_SINGULAR, LIMITED, UNREACHED = range(4)  # from best to worst
 SINGULAR_BELOW = float(np.sin(np.deg2rad(5.0)))  # of `from_singular`: within 5 deg of a singularity
 SHAPE = (61, 181)  # stand-offs and spins
-HALVINGS = 7  # an edge is found to 1/256 of the grid
 ON_LINE = 1e-9  # |theta_psi| on a line where spin does not move the joint
 
 Bools = npt.NDArray[np.bool_]
 Bytes = npt.NDArray[np.uint8]
-
-
-@dataclass(frozen=True)
-class Region:
-    """Where the map is of one zone or a worse one.
-
-    Attributes:
-        zone: `NEAR_SINGULAR`, `LIMITED` or `UNREACHED`.
-        rings: closed outlines, holes in it among them (even-odd), each (n, 2): stand-off [m] and spin [rad].
-        edges: the same without what runs along the border of the map, each (n, 2).
-    """
-
-    zone: int
-    rings: tuple[Array, ...]
-    edges: tuple[Array, ...]
 
 
 @dataclass(frozen=True)
@@ -131,7 +115,8 @@ def twist_map(
         lines = _of_the_best(lines, standoff, psi, shown, zone)
     return TwistMap(
         branch, standoff, psi, shown, zone, limited, singular, np.take_along_axis(spread, best, -1)[..., 0],
-        _regions(here, standoff, psi, zone), tuple(lines), tuple(i + 1 for i in stuck_joints(theta_psi)),
+        regions(standoff, psi, zone, (NEAR_SINGULAR, LIMITED, UNREACHED), here.zone), tuple(lines),
+        tuple(i + 1 for i in stuck_joints(theta_psi)),
         () if branch is None else load_lines(drilling, branch, standoff, psi, thrust),
     )  # fmt: skip
 
@@ -148,6 +133,10 @@ class _Place:
         theta_s, theta_psi = joint_rates(self.drilling, s, p)
         return theta_s[..., self.branches, :], theta_psi[..., self.branches, :]
 
+    def zone(self, s: Array, p: Array) -> Bytes:
+        """The mildest zone of the branches at points (...,)."""
+        return np.asarray(self.zones(s, p)[0].min(axis=-1))
+
     def zones(self, s: Array, p: Array) -> tuple[Bytes, Bytes, Bytes]:
         """Zone, joints over their limits and near singularities (bits), each (..., B), at points (...,)."""
         robot = self.drilling.robot
@@ -158,59 +147,6 @@ class _Place:
         singular = np.packbits(near, axis=-1, bitorder="little")[..., 0]
         zone = np.where(limited > 0, LIMITED, np.where(singular > 0, NEAR_SINGULAR, OPEN))
         return np.where(np.isnan(joints[..., 0]), UNREACHED, zone).astype(np.uint8), limited, singular
-
-
-def _regions(here: _Place, standoff: Array, psi: Array, zone: Bytes) -> tuple[Region, ...]:
-    """The three regions of the zones, shape (S, P), drawn to where the zone changes between two points of the grid."""
-    drawn = []
-    for level in (NEAR_SINGULAR, LIMITED, UNREACHED):
-        contours = contour_generator(z=(zone >= level).astype(float), fill_type=FillType.OuterOffset)
-        filled = zip(*contours.filled(0.5, np.inf), strict=True)
-        rings = [points[a:b] for points, offsets in filled for a, b in pairwise(offsets)]
-        drawn.append((level, rings, contours.lines(0.5)))
-    curves = [curve for _, rings, edges in drawn for curve in (*rings, *edges)]
-    levels = [level for level, rings, edges in drawn for _ in (*rings, *edges)]
-    found = iter(_on_the_edge(here, standoff, psi, curves, levels))
-    return tuple(
-        Region(level, tuple(next(found) for _ in rings), tuple(next(found) for _ in edges))
-        for level, rings, edges in drawn
-    )
-
-
-def _on_the_edge(here: _Place, standoff: Array, psi: Array, curves: list[Array], levels: list[int]) -> list[Array]:
-    """Curves through midpoints between two points of the grid, drawn to where the zone changes between those two.
-
-    Args:
-        here: what is asked.
-        standoff: of the grid [m], shape (S,).
-        psi: of the grid [rad], shape (P,).
-        curves: in numbers of the grid, each (n, 2): spin first.
-        levels: of each curve: on one side of it the zone is as grave or graver, on the other milder.
-
-    Returns:
-        the curves, each (n, 2): stand-off [m] and spin [rad].
-    """
-    if not curves:
-        return []
-    sizes = [len(curve) for curve in curves]
-    each = np.column_stack([np.repeat(levels, sizes), np.concatenate(curves)[:, ::-1]])
-    points, where = np.unique(each, axis=0, return_inverse=True)
-    level, at = points[:, 0], points[:, 1:]
-    low, high = np.floor(at), np.ceil(at)  # the same but for the coordinate of which the point is a midpoint
-
-    def place(t: Array) -> tuple[Array, Array]:
-        s, p = (low + t[:, None] * (high - low)).T
-        return standoff[0] + s * (standoff[1] - standoff[0]), psi[0] + p * (psi[1] - psi[0])
-
-    def grave(t: Array) -> Bools:
-        return np.asarray(here.zones(*place(t))[0].min(axis=-1) >= level)
-
-    begins = grave(np.zeros(len(at)))
-    t, step = np.full(len(at), 0.5), 0.25
-    for _ in range(HALVINGS):
-        t += np.where(grave(t) == begins, step, -step)
-        step /= 2
-    return np.split(np.stack(place(t), axis=-1)[where.ravel()], np.cumsum(sizes)[:-1])
 
 
 def _sign_lines(here: _Place, standoff: Array, psi: Array, theta_psi: Array) -> list[SignLine]:

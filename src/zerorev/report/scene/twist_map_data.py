@@ -12,13 +12,14 @@ from zerorev.model.profile import Profile
 from zerorev.model.robot import Robot
 from zerorev.motion.drilling import Drilling
 from zerorev.motion.loads import twins_lost_motion
+from zerorev.report.scene.clearance import ClearanceZone
 from zerorev.report.scene.load_lines import senses
 from zerorev.report.scene.motion_look import Look
 from zerorev.report.scene.palette import DASHES, JOINT_COLOURS, JOINT_INKS
 from zerorev.report.scene.twist_map import LIMITED, NEAR_SINGULAR, UNREACHED, TwistMap
 from zerorev.report.words.lost_motion import lost_motion_words
 
-__all__ = ["loads_data", "map_data", "motion_data"]
+__all__ = ["loads_data", "map_data", "motion_data", "zone_data"]
 
 FLOOR, CAP = 0.3, 10.0  # [deg/mm] twist spreads that the shades tell apart
 
@@ -146,6 +147,22 @@ def map_data(robot: Robot, found: TwistMap) -> dict[str, Any]:
     }
 
 
+def zone_data(found: ClearanceZone) -> dict[str, Any]:
+    """Where the clearance is not kept, beside `map_data`.
+
+    Args:
+        found: of the hole and the branch of the map.
+    """
+    asked = f"nearer than {mm(found.clearance):g} mm" if found.clearance > 0 else "touching"
+    return {
+        "branch": found.branch,
+        "near": _coded(found.near.astype(np.uint8)),
+        "rings": [_flat(ring, found) for ring in found.region.rings],
+        "edges": [_flat(edge, found) for edge in found.region.edges],
+        "text": f"{asked} to part, fixtures or itself",
+    }
+
+
 def _legend(robot: Robot, found: TwistMap) -> list[dict[str, Any]]:
     """Which zones there are, and of which joint."""
     out = []
@@ -161,7 +178,7 @@ def _legend(robot: Robot, found: TwistMap) -> list[dict[str, Any]]:
     return out
 
 
-def _flat(points: np.ndarray, found: TwistMap) -> list[float]:
+def _flat(points: np.ndarray, found: TwistMap | ClearanceZone) -> list[float]:
     """Path distance from the corner [mm] and spin [deg] of each point, one after the other."""
     away = mm(points[:, 0] - found.standoff[0])
     flat: list[float] = np.round(np.stack([away, deg(points[:, 1])], axis=-1), 3).ravel().tolist()

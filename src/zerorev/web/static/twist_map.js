@@ -7,6 +7,7 @@ const ALONG = { plain: 1, shift: 5, fine: 0.1 }; // [mm]
 const SETTLED = 300; // [ms] after the last key the motion counts as let go
 const LOST = "predicted deviation of the tip across the drill axis that the gears cause, half a stroke about the turn; friction, stiffness and gap are guesses";
 const LOADS = "where a leg crosses such a curve, the gear crosses its lost motion without a reversal; drawn for the way each joint turns in this motion, and for the share of the nominal friction that is guessed to lie behind the gear";
+const NEAR = "where two bodies of the arm, or the arm and what stands around it, come nearer than asked for; of one branch";
 const LEAST_HALF = 10; // [deg] shown on either side of the middle, at the closest
 
 export default {
@@ -15,6 +16,7 @@ export default {
       <div class="zr-tw-tools">
         <button type="button" :class="{ away: !edited }" :disabled="!edited" @click="$emit('let_go')" data-testid="let-go" title="give up the motion by hand">back to the plan</button>
         <button type="button" v-if="loaded" :aria-pressed="String(loads)" @click="showLoads" data-testid="loads" :title="LOADS">loads</button>
+        <button type="button" v-if="zoned" :aria-pressed="String(near)" @click="showNear" data-testid="clearance-zone" :title="NEAR">clearance</button>
         <label>branch <select aria-label="branch" data-testid="branch" :value="choice" :disabled="!branches.length" @change="choose">
           <option v-for="each in branches" :key="each.value" :value="each.value">{{ each.label }}</option></select></label>
         <span class="zr-tw-zoom" role="group" aria-label="spins that are shown">
@@ -36,17 +38,23 @@ export default {
           <div class="zr-tw-number" v-if="lost" :title="LOST">lost motion <b data-testid="lost">{{ lost[0] }}</b> mm, legs swapped <b data-testid="lost-twin">{{ lost[1] }}</b> mm</div>
         </div>
       </div>
+      <div class="zr-tw-least" v-if="around" :class="{ low: nearest && nearest.low, away: !runs }" data-testid="nearest">
+        <span>least clearance <b data-testid="clearance">{{ nearest ? nearest.least : "–" }}</b> mm</span>
+        <span v-if="nearest" data-testid="clearance-between">{{ nearest.between }}</span>
+        <button type="button" v-if="nearest" data-testid="clearance-where" title="show the robot there" @click="$emit('seek', { x: nearest.x })">{{ nearest.where }}</button>
+      </div>
       <div class="zr-tw-plot" ref="plot">
         <canvas ref="canvas" aria-hidden="true"></canvas>
         <svg ref="back" aria-hidden="true"></svg>
         <svg ref="svg" role="group" aria-label="spin over the path; the points of the motion can be moved"></svg>
-        <p class="zr-tw-why" :class="{ bad: !runs, mild: runs }" data-testid="why" role="status">{{ why }}</p>
+        <p class="zr-tw-why" :class="{ bad: !runs, hit: runs && nearest?.low, mild: runs && !nearest?.low }" data-testid="why" role="status">{{ why }}</p>
         <div class="zr-tw-cover" v-if="cover" data-testid="map-cover" role="status"><span class="zr-tw-spinner" v-if="loading"></span>{{ cover }}</div>
       </div>
       <div class="zr-tw-foot">
         <div class="zr-tw-readout" data-testid="readout">{{ readout }}</div>
         <ul class="zr-tw-legend" :class="{ away: readout }" aria-label="legend">
           <li v-for="zone in zones" :key="zone.name"><i class="zr-tw-swatch" :class="'zr-tw-' + zone.name + '-swatch'"></i>{{ zone.text }}</li>
+          <li v-if="near && zoned" :title="NEAR"><i class="zr-tw-swatch zr-tw-tight-swatch"></i>{{ zoned }}</li>
           <li v-if="lined"><svg width="22" height="6" aria-hidden="true"><line x1="0" x2="22" y1="3" y2="3" stroke="currentColor" stroke-width="2" stroke-dasharray="6 2"/></svg>spin does not move a joint</li>
           <li v-if="loads && loaded" :title="LOADS"><svg width="22" height="6" aria-hidden="true"><line x1="0" x2="22" y1="3" y2="3" stroke="currentColor" class="zr-tw-load"/></svg>a joint’s load changes its sign (share of its friction)</li>
           <li v-if="stuck.length">spin never moves {{ stuck.join(", ") }}</li>
@@ -55,13 +63,14 @@ export default {
       </div>
     </section>`,
 
-  emits: ["ready", "grab", "drag", "drop", "restore", "let_go", "choose"],
+  emits: ["ready", "grab", "drag", "drop", "restore", "let_go", "choose", "seek"],
 
   data() {
     return {
       count: "–", joints: [], travel: "", margin: "", limit: "", why: "", runs: true, edited: false, grade: "",
       choice: "", branches: [], readout: "", zones: [], lined: false, stuck: [], scale: "", loading: true,
       lost: null, loads: false, loaded: false, LOST, LOADS,
+      around: false, nearest: null, near: true, zoned: "", NEAR,
       cover: "the map is being drawn …",
     };
   },
@@ -109,6 +118,7 @@ export default {
 
     show_map(data) {
       this.plane.show(data);
+      this.zoned = "";
       if (data) {
         this.plane.reach = data.reach;
         const zones = { 1: "near", 2: "limited", 3: "unreached" };
@@ -122,6 +132,11 @@ export default {
       this.loading = false;
       this.cover = data ? "" : "choose a hole to see its twist map";
       this.draw();
+    },
+
+    show_zone(data) {
+      this.plane.showZone(data);
+      this.zoned = data?.text ?? "";
     },
 
     show_loading() {
@@ -160,7 +175,9 @@ export default {
       this.travel = data.travel;
       this.margin = data.margin;
       this.limit = data.limit;
-      this.why = data.why;
+      this.around = data.around;
+      this.nearest = this.legs.nearest = data.nearest;
+      this.why = data.why || (data.nearest?.why ?? "");
       this.edited = data.edited;
       this.lost = data.lost;
       this.plane.turning(data.senses ?? null);
@@ -169,6 +186,11 @@ export default {
     showLoads() {
       this.loads = this.plane.loaded = !this.loads;
       this.plane.drawLoads();
+    },
+
+    showNear() {
+      this.near = this.plane.tight = !this.near;
+      this.plane.drawZone();
     },
 
     drawn({ seq, asked }) {

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from typing import Any
 
 import nicegui
-from nicegui import ui
+import numpy as np
+from nicegui import background_tasks, ui
 from nicegui.element import Element
 from nicegui.events import GenericEventArguments
 
 from zerorev.errors import InputError
+from zerorev.model.job import Job
 from zerorev.motion.drilling import Drilling
 from zerorev.report import scene
 from zerorev.report.scene.cell_data import arm_data, holes_data, reversals_data, slice_data, track_data
+from zerorev.report.scene.clearance_data import nearest_data
 from zerorev.report.scene.motion_look import held
+from zerorev.report.scene.solids_data import solids_data
+from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import State, selected, shown
 from zerorev.web.throttle import throttled
@@ -69,6 +75,7 @@ class _Sender:
         self._waits_since: float | None = None
         self._held: tuple[Any, ...] | None = None
         self._sent: object = None  # the holes that the browser has
+        self._around: object = None  # the robot of whose bodies distances are computed at once
         self._holes = throttled(self._send_holes, HOLES_APART)
         self._reversals = throttled(self._send_reversals, HOLES_APART)
         self._motion = throttled(self._send_motion, MOTIONS_APART)
@@ -82,6 +89,7 @@ class _Sender:
             self._send_holes()
             self._send_motion()
             self._send_cells()
+            background_tasks.create(self._send_solids(job))
 
     def changed(self, before: State, after: State) -> None:
         """Send what is another object than before."""
@@ -129,9 +137,22 @@ class _Sender:
     def _send_holes(self) -> None:
         state = self._session.state
         if state.job is not None:
-            holes = holes_data(state.job.holes, state.job.T_base_part, state.answers)
+            holes = holes_data(
+                state.job.holes, state.job.T_base_part, state.answers,
+                shaped=state.job.settings.surroundings.part is not None,
+            )  # fmt: skip
             self._scene(holes=holes, selected=state.selected)
             self._sent = state.job.holes
+
+    async def _send_solids(self, job: Job) -> None:
+        """Bodies and surroundings: large meshes take a second or two to be made ready."""
+        data = await aside(partial(_solids, job))
+        now = self._session.state.job
+        if data is None or now is None or now.robot is not job.robot or self._view.is_deleted:
+            return
+        self._around = job.robot
+        self._scene(solids=data)
+        self._motion()
 
     def _send_reversals(self) -> None:
         state = self._session.state
@@ -157,7 +178,8 @@ class _Sender:
         data: dict[str, Any] = {"hole": state.selected, "planned": None, "held": None}
         if hole is not None and motion is not None and job is not None:
             profile, branch, drilling = motion.profile, motion.branch, Drilling.of(job, hole)
-            data["planned"] = track_data(drilling, profile, branch, job.settings)
+            near = self._around is job.robot
+            data["planned"] = track_data(drilling, profile, branch, job.settings, near=near)
             still = held(profile)
             made_of = (id(hole), id(job.settings), branch, still.standoff.tobytes(), float(still.psi[0]))
             if made_of == self._held:
@@ -169,3 +191,12 @@ class _Sender:
             self._held = None
         self._waits_since = monotonic()
         self._view.run_method("show_motion", data)
+
+
+def _solids(job: Job) -> dict[str, Any] | None:
+    """Bodies and surroundings as they are sent; the distances between them are made ready, too."""
+    data = solids_data(job.robot, job.tool, job.settings)
+    if data is not None:
+        zero = np.zeros(1)
+        nearest_data(Drilling.of(job, job.holes[0]), job.settings, 0, zero, zero)
+    return data

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from nicegui import background_tasks, ui
@@ -15,18 +15,17 @@ from nicegui.events import GenericEventArguments
 from zerorev.errors import InputError
 from zerorev.files.units import m, rad
 from zerorev.model._arrays import finite
-from zerorev.model.hole import Hole
 from zerorev.model.profile import Profile
-from zerorev.model.robot import Robot
-from zerorev.model.tool import Tool
 from zerorev.motion.drilling import Drilling
 from zerorev.report.scene import motion_look
 from zerorev.report.scene import twist_map as maps
-from zerorev.report.scene.twist_map_data import loads_data, map_data, motion_data
+from zerorev.report.scene.clearance_data import least_data
+from zerorev.report.scene.twist_map_data import loads_data, map_data, motion_data, zone_data
 from zerorev.report.words.lost_motion import lost_motion_words
 from zerorev.web.aside import aside
 from zerorev.web.session import Session
 from zerorev.web.state import State, Steered, shown, steered
+from zerorev.web.wanted_map import WantedMap
 
 __all__ = ["twist_map"]
 
@@ -55,28 +54,6 @@ def twist_map(session: Session) -> None:
     _TwistMap(session)
 
 
-class _Wanted(NamedTuple):
-    """What a map is drawn of: what `report.twist_map.twist_map` is asked."""
-
-    robot: Robot
-    tool: Tool
-    hole: Hole
-    branch: int | None
-    corner: float
-    thrust: float
-    limit_margin: float
-
-    @property
-    def drilling(self) -> Drilling:
-        """The three together."""
-        return Drilling(self.robot, self.tool, self.hole, self.limit_margin)
-
-    def same(self, other: _Wanted) -> bool:
-        """Whether it is the same map: robots, tools and holes are not compared number by number."""
-        things = all(a is b for a, b in zip(self[:3], other[:3], strict=True))
-        return things and self[3:] == other[3:]
-
-
 class _TwistMap:
     """What one map on one page has to remember.
 
@@ -87,7 +64,7 @@ class _TwistMap:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.choice: int | None = OWN
-        self.drawn: _Wanted | None = None  # what the map was drawn of
+        self.drawn: WantedMap | None = None  # what the map was drawn of
         self.drag: object = None  # stands for the drag under way: all that it changes is one step for `Session.undo`
         self.pending: Steered | None = None  # the edited motion, which the other views may not know yet
         self.passed: object = NOTHING  # what this map passed to them last
@@ -95,7 +72,8 @@ class _TwistMap:
         self.interval = SOONEST
         self.drawing = asyncio.Lock()  # one map at a time: who steps through the holes waits for the last one alone
         self.element = _Element().classes("w-full h-full")
-        for name in ("ready", "grab", "drag", "drop", "restore", "let_go", "choose"):
+        self.prepared: object = None  # the robot of whose bodies distances are computed at once
+        for name in ("ready", "grab", "drag", "drop", "restore", "let_go", "choose", "seek"):
             self.element.on(name, getattr(self, f"on_{name}"))
         session.watch(self.changed)
         session.hear("seek", self.show_cursor)
@@ -189,6 +167,10 @@ class _TwistMap:
             self.show_motion(None)
         self.show_map()
 
+    def on_seek(self, event: GenericEventArguments) -> None:
+        """The user wants to see the arm at a place of the motion."""
+        self.session.tell("seek", float(event.args["x"]))
+
     def take(self, points: Any) -> bool:
         """Take the points of a drag as the edited motion; points that form no motion of this hole change nothing."""
         motion, hole = self.motion, self.session.state.hole
@@ -235,11 +217,26 @@ class _TwistMap:
         seen = motion_look.look(drilling, motion.profile, motion.branch, job.settings)
         data = motion_data(job.robot, motion.profile, seen)
         data |= loads_data(drilling, motion.profile, motion.branch, job.settings.thrust)
+        data |= self.near(drilling, seen, fast=seq is not None)
         data |= {"seq": seq, "fit": fit, "edited": self.pending is not None or state.steered is not None}
         if seq is None:
             held = motion_look.held(motion.profile)
             data["baseline"] = motion_look.look(drilling, held, motion.branch, job.settings).reversals
         self.element.run_method("show_motion", data)
+
+    def near(self, drilling: Drilling, seen: motion_look.Look, *, fast: bool) -> dict[str, Any]:
+        """How near a motion comes to what stands around, as soon as that can be said at once."""
+        job = self.session.state.job
+        if job is None or self.prepared is not job.robot:
+            return {"around": self.around, "nearest": None}
+        found = least_data(drilling, job.settings, seen.motion, fast=fast)
+        return {"around": self.around, "nearest": found}
+
+    @property
+    def around(self) -> bool:
+        """Whether there is something that the arm is held apart from."""
+        job = self.session.state.job
+        return job is not None and bool(job.settings.surroundings.obstacles)
 
     def show_map(self) -> None:
         state = self.session.state
@@ -250,14 +247,17 @@ class _TwistMap:
         corner = float(self.motion.profile.standoff.min()) if self.motion else state.job.settings.corner_standoff
         job = state.job
         thrust, margin = job.settings.thrust, job.settings.limit_margin
-        wanted = _Wanted(job.robot, job.tool, state.hole, self.branch, corner, thrust, margin)
+        wanted = WantedMap(
+            job.robot, job.tool, state.hole, self.branch, corner, thrust, margin,
+            job.settings.clearance, job.settings.surroundings,
+        )  # fmt: skip
         if self.drawn is not None and wanted.same(self.drawn):
             return
         self.drawn = wanted
         self.element.run_method("show_loading")
         background_tasks.create(self.draw_map(wanted))
 
-    async def draw_map(self, wanted: _Wanted) -> None:
+    async def draw_map(self, wanted: WantedMap) -> None:
         """Draw a map in a thread, and show it if it is still the one that is wanted."""
         async with self.drawing:
             if wanted is not self.drawn:
@@ -265,8 +265,17 @@ class _TwistMap:
             found = await aside(
                 partial(maps.twist_map, wanted.drilling, wanted.branch, wanted.corner, thrust=wanted.thrust)
             )
-        if wanted is self.drawn:
+            if wanted is not self.drawn:
+                return
             self.element.run_method("show_map", map_data(wanted.robot, found))
+            if not wanted.surroundings.obstacles:
+                return
+            zone = await aside(wanted.zone)
+        if wanted is self.drawn:
+            self.element.run_method("show_zone", None if zone is None else zone_data(zone))
+            if self.prepared is not wanted.robot:
+                self.prepared = wanted.robot
+                self.show_motion(None)
 
     def show_cursor(self, distance_mm: float | None) -> None:
         """Where the motion is played."""
@@ -299,5 +308,6 @@ def _empty(state: State) -> dict[str, Any]:
     return {
         "points": [], "runs": answer is None, "why": why, "faults": [], "marks": [], "reversals": None, "joints": [],
         "travel": "", "margin": "", "limit": "", "edited": False, "lost": lost_motion_words(None) if weighed else None,
-        "senses": None,
+        "senses": None, "nearest": None,
+        "around": state.job is not None and bool(state.job.settings.surroundings.obstacles),
     }  # fmt: skip

@@ -1,6 +1,7 @@
 // The cell, in the page and in the replay file: the arm with its motion, played; the holes, to be picked.
 import { THREE, OrbitControls } from "nicegui-scene";
 import { Arm } from "zerorev-cell/cell_arm.js";
+import { Around, NearestLine } from "zerorev-cell/cell_around.js";
 import { Bar, Readout, element, legend } from "zerorev-cell/cell_bar.js";
 import { listen, point } from "zerorev-cell/cell_hands.js";
 import { Holes, Slice, floor, frame, free } from "zerorev-cell/cell_room.js";
@@ -27,7 +28,7 @@ export class Cell {
     root.cell = this;
     this.bar = new Bar({
       play: () => this.play(!this.playing), seek: (x) => this.seek(x, true), speed: (factor) => (this.speed = factor),
-      baseline: (kind) => this.setBaseline(kind), camera: (preset) => this.look(preset),
+      baseline: (kind) => this.setBaseline(kind), bodies: (shown) => this.setBodies(shown), camera: (preset) => this.look(preset),
     });
     this.readout = new Readout();
     this.canvas = element("canvas", {
@@ -48,9 +49,10 @@ export class Cell {
     }
   }
 
-  // data: any of what report/cell_data makes: arm, holes, or their reversals alone (and which is selected)
-  showScene({ arm, holes, reversals, selected }) {
+  // data: any of what report/cell_data makes: arm, holes, or their reversals alone (and which is selected); and of solids
+  showScene({ arm, solids, holes, reversals, selected }) {
     if (arm) this._showArm(arm);
+    if (solids !== undefined) this._showSolids(solids);
     if (holes) this._showHoles(holes);
     if (reversals) this._showReversals(reversals);
     if (selected !== undefined) this._select(selected);
@@ -96,6 +98,8 @@ export class Cell {
     if (this.failed || !this.arm) return;
     this.arm.setJoints(pose?.joints ?? this.data.home_deg);
     this.arm.setHalos(track ? track.near(this.x).map((mark) => mark.joint) : []);
+    const near = track?.nearestAt(this.x);
+    this.line.show(near ?? null, near?.low ? this.bad : this.good);
     if (other) this.twin.setJoints(other.joints);
     this.twin.setHalos(other ? beside.near(this.x).map((mark) => mark.joint) : []);
     if (report) this._tell();
@@ -121,6 +125,14 @@ export class Cell {
     if (was !== kind && [was, kind].includes("side")) this.refit = true;
   }
 
+  // whether the bodies of arm and tool are shown
+  setBodies(shown) {
+    this.bodied = shown;
+    this.bar.bodies.setAttribute("aria-pressed", String(shown));
+    this.around?.setBodies(shown);
+    this.invalidate();
+  }
+
   // a preset: iso, front, side, top, close (the hole), drill (along it), fit (as it is, but all in sight)
   look(preset) {
     if (this.failed || !this.arm) return;
@@ -144,8 +156,12 @@ export class Cell {
     this.ink = new THREE.Color(style.getPropertyValue("--zr-ink").trim() || "#1a1a1a");
     this.accent = style.getPropertyValue("--zr-accent").trim() || "#005a8f";
     this.muted = style.getPropertyValue("--zr-muted").trim() || "#5c5c5c";
+    this.good = style.getPropertyValue("--zr-good").trim() || "#0072b2";
+    this.bad = style.getPropertyValue("--zr-bad").trim() || "#a3123a";
     if (this.failed || !this.data) return;
     this._showFloor();
+    if (this.solids) this._showSolids(this.solids);
+    this.seek(this.x);
     if (this.holesData) this._showHoles(this.holesData);
     this._showRibbons();
   }
@@ -204,7 +220,8 @@ export class Cell {
     this.room = new THREE.Group();
     this.scene.add(new THREE.HemisphereLight("#ffffff", "#8d949c", 1.7), this.sun, this.sun.target, this.room);
     this.ribbons = [new THREE.Group(), new THREE.Group()];
-    this.scene.add(...this.ribbons);
+    this.line = new NearestLine();
+    this.scene.add(...this.ribbons, this.line.root);
     const size = new ResizeObserver(() => this._resize());
     size.observe(this.stage);
     const dress = new MutationObserver(() => this.theme());
@@ -228,6 +245,7 @@ export class Cell {
 
   _showArm(data) {
     this.data = data;
+    this._showSolids(null); // they are on the arm's links
     for (const old of [this.arm, this.twin]) if (old) this.scene.remove(old.root), free(old.root);
     if (this.failed) return;
     this.arm = new Arm(data);
@@ -240,11 +258,22 @@ export class Cell {
   _showFloor() {
     free(this.room);
     const reach = this.data.reach_mm;
-    this.room.add(floor(reach, this.ink), frame([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], 0.5 * reach));
+    this.room.add(floor(reach, this.ink, this.solids?.floor_mm ?? 0), frame([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]], 0.5 * reach));
     this.sun.position.set(1.2 * reach, -2.2 * reach, 4 * reach);
     Object.assign(this.sun.shadow.camera, { left: -2 * reach, right: 2 * reach, top: 2 * reach, bottom: -2 * reach, far: 10 * reach });
     this.sun.shadow.camera.updateProjectionMatrix();
     this.invalidate(true);
+  }
+
+  // data: what report/solids_data makes, or null
+  _showSolids(data) {
+    this.solids = data;
+    this.bar.bodies.hidden = !data;
+    if (this.failed) return;
+    this.around?.dispose();
+    this.around = data && new Around(data, this.arm, this.ink);
+    if (data) this.scene.add(this.around.root), this.setBodies(this.bodied ?? false);
+    this._showFloor();
   }
 
   _showHoles(data) {
@@ -338,6 +367,7 @@ export class Cell {
     this.renderer.setScissorTest(true);
     for (let n = 0; n < count; n++) {
       this.arm.root.visible = this.ribbons[0].visible = n === 0;
+      this.line.root.visible = n === 0 && Boolean(this.line.near);
       this.twin.root.visible = this.ribbons[1].visible = Boolean(this.held) && (side ? n === 1 : this.mode === "ghost");
       if (n === 1) this.renderer.shadowMap.needsUpdate = true;
       this.renderer.setViewport(n * wide, 0, wide, this.high);
@@ -381,6 +411,7 @@ export class Cell {
     };
     halos(this.arm, this.track, 0);
     if (this.mode !== "off") halos(this.twin, this.held, count - 1, count === 1 ? " at constant spin" : "");
+    if (this.line.near) add(this.line.words, place.copy(this.line.place), "zrc-nearest", 0, this.line.near.low ? this.bad : this.good);
     if (this.part?.visible) add("part", place.copy(this.partPlace), "zrc-frame");
     if (this.hover) add(this.hover.words, place.copy(this.hover.place), "");
     while (this.labels.length < wanted.length) this.labels.push(this.overlay.appendChild(element("span")));
@@ -390,8 +421,9 @@ export class Cell {
       if (label.hidden) return;
       let [text, x, y, kind, colour, end] = wanted[i];
       const left = Math.max(2, Math.min(x + 14, end - 4 - LETTER * text.length - 18));
-      y = Math.max(2, Math.min(y - 10, this.high - 24));
-      while (taken.some(([a, b]) => Math.abs(a - left) < 110 && Math.abs(b - y) < 22)) y += 22;
+      const free = (at) => at >= 2 && at <= this.high - 24 && !taken.some(([a, b]) => Math.abs(a - left) < 110 && Math.abs(b - at) < 22);
+      const first = Math.max(2, Math.min(y - 10, this.high - 24)); // the nearest free place below it or above
+      y = [0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7].map((n) => first + 22 * n).find(free) ?? first;
       taken.push([left, y]);
       label.textContent = text;
       label.className = `zrc-label ${kind}`;

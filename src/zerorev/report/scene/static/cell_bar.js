@@ -43,7 +43,7 @@ export function signed(value, digits) {
 }
 
 export class Bar {
-  // on: play(), seek(x), speed(factor), baseline(kind), camera(preset)
+  // on: play(), seek(x), speed(factor), baseline(kind), bodies(shown), camera(preset)
   constructor(on) {
     this.play = element("button", { type: "button", class: "zrc-play", "data-testid": "cell-play", onclick: on.play }, icon("play"));
     this.slider = element("input", {
@@ -55,12 +55,17 @@ export class Bar {
     this.speed = element("select", { "aria-label": "Speed of playing", "data-testid": "cell-speed", onchange: () => on.speed(Number(this.speed.value)) },
       ...SPEEDS.map((factor) => element("option", { value: factor, selected: factor === 1 }, `×${factor}`)));
     this.baseline = choice("Constant spin", BASELINES, "off", "cell-baseline", on.baseline);
+    this.bodies = element("button", {
+      type: "button", class: "zrc-switch", "data-testid": "cell-bodies", "aria-pressed": "false", hidden: true,
+      title: "the bodies of arm and tool that are held apart from what stands around",
+      onclick: () => on.bodies(this.bodies.getAttribute("aria-pressed") !== "true"),
+    }, "Bodies");
     const cameras = choice("View", CAMERAS, null, "cell-camera", on.camera);
     this.root = element("div", { class: "zrc-bar" },
       element("div", { class: "zrc-row" }, this.play,
         element("div", { class: "zrc-track" }, this.marks, this.slider,
           element("div", { class: "zrc-ends", "aria-hidden": "true" }, element("span", {}, "plunge"), element("span", {}, "retract"))),
-        this.time, element("label", { class: "zrc-group" }, element("span", { class: "zrc-name" }, "Speed"), this.speed)),
+        this.time, element("label", { class: "zrc-group" }, element("span", { class: "zrc-name" }, "Speed"), this.speed), this.bodies),
       element("div", { class: "zrc-row zrc-choices" }, this.baseline.group, cameras.group));
     this.setTrack(null);
     this.setPlaying(false);

@@ -27,7 +27,7 @@ export function free(group) {
 }
 
 // a line every 100 mm, a stronger one every 500 mm, fading into the distance
-export function floor(reach, ink) {
+export function floor(reach, ink, height) {
   const half = Math.ceil((1.5 * reach) / 500) * 500, group = new THREE.Group();
   for (const [step, opacity] of [[100, 0.16], [500, 0.34]]) {
     const points = [];
@@ -43,7 +43,7 @@ export function floor(reach, ink) {
   shade.receiveShadow = true;
   shade.position.z = -0.5;
   group.add(shade);
-  group.position.z = -1;
+  group.position.z = height - 1;
   return group;
 }
 
@@ -105,6 +105,7 @@ export class Holes {
     this.root = new THREE.Group();
     this.colours = colours;
     this._plates(data.plates, ink);
+    this.onFaces = data.plates.length > 0 || data.shaped; // of plates, or of the part itself
     this.bodies = this._bodies();
     this.crosses = new THREE.Group();
     this.root.add(...this.bodies, this.crosses);
@@ -175,7 +176,6 @@ export class Holes {
       group.add(plate, edges);
       this.root.add(group);
     }
-    this.onPlates = plates.length > 0;
   }
 
   // of each hole, which geometries, whether they reach down to its bottom, and their looks
@@ -186,7 +186,7 @@ export class Holes {
       [new THREE.CylinderGeometry(HOLE, HOLE, 1, wall, 1, true).translate(0, -0.5, 0), true, { side: THREE.BackSide }],
       [new THREE.TorusGeometry(1.3 * HOLE, 0.35 * HOLE, round, rim).rotateX(Math.PI / 2), false, {}],
     ];
-    if (!this.onPlates) parts.push([
+    if (!this.onFaces) parts.push([
       new THREE.CylinderGeometry(5 * HOLE, 5 * HOLE, 0.6, 28).translate(0, -1, 0), false,
       { transparent: true, opacity: 0.3, depthWrite: false },
     ]);

@@ -16,6 +16,11 @@ export class Track {
     this.reversals = data.reversals;
     this.runs = data.runs;
     this.why = data.why;
+    const nearest = data.nearest;
+    this.nearest = nearest && {
+      names: nearest.pairs, pair: floats(nearest.pair), apart: floats(nearest.apart_mm), points: floats(nearest.points_mm),
+      asked: nearest.asked_mm,
+    };
   }
 
   get start() { return this.x[0]; }
@@ -47,6 +52,18 @@ export class Track {
   near(x) {
     const close = Math.max(0.6, 0.03 * (this.end - this.start));
     return this.marks.filter((mark) => Math.abs(mark.x_mm - x) <= close);
+  }
+
+  // what of the arm is nearest to what stands around: how far [mm], and where; null where nothing is known
+  nearestAt(x) {
+    if (!this.nearest) return null;
+    const { names, pair, apart, points, asked } = this.nearest, [n, share] = this._find(this.x, x);
+    const k = share < 0.5 ? n : n + 1, part = pair[n] === pair[n + 1] ? share : k - n; // of two pairs the one nearby
+    if (pair[k] < 0) return null;
+    const mix = (values, size, i) => values[size * n + i] * (1 - part) + values[size * (n + 1) + i] * part;
+    const far = part === k - n ? apart[k] : mix(apart, 1, 0);
+    const at = Array.from({ length: 6 }, (_, i) => (part === k - n ? points[6 * k + i] : mix(points, 6, i)));
+    return { apart: far, points: at, names: names[pair[k]], low: far < asked - 0.02 };
   }
 
   tipAt(x, out) { return this._ribbonAt(x, 0, out); }

@@ -24,7 +24,7 @@ export function show(page) {
   });
   list.append(...data.holes.map((hole, i) => element("option", { value: i }, `${hole.id} (${hole.verdict})`)));
   list.addEventListener("change", () => choose(Number(list.value)));
-  cell.showScene({ arm: data.arm, holes: data.scene });
+  cell.showScene({ arm: data.arm, solids: data.solids, holes: data.scene });
   choose(data.holes.findIndex((hole) => hole.motion));
 
   function choose(i) {

@@ -34,6 +34,8 @@ export class Legs {
       }),
     );
     this.handles = svg(root, "g");
+    this.nearest = null; // {x [mm], psi [deg], low}: where the motion comes nearest to what stands around
+    this.nearestMark = svg(root, "circle", { class: "zr-tw-nearest", r: 14, "data-testid": "nearest-mark" });
     this.marks = svg(root, "g");
   }
 
@@ -85,6 +87,7 @@ export class Legs {
       this.handles.replaceChildren();
       this.marks.replaceChildren();
       this.faults.setAttribute("d", "");
+      this.nearestMark.style.display = "none";
       return;
     }
     const d = this.path();
@@ -161,6 +164,7 @@ export class Legs {
       const least = 0.004 * this.plane.reach; // so that a point is seen, too
       return this.path(Math.min(start, end - least), Math.max(end, start + least));
     }).join(""));
+    this.drawNearest();
     const marks = this.motion?.marks ?? [];
     while (this.marks.children.length > marks.length) this.marks.lastChild.remove();
     while (this.marks.children.length < marks.length) {
@@ -186,6 +190,17 @@ export class Legs {
       set(text, { x: -8, y: leg === "target" || beside ? 21 : -9, "text-anchor": "end" });
       this.name(text, names);
     }
+  }
+
+  drawNearest() {
+    const near = this.nearest;
+    const there = near && Math.abs(near.x) <= this.plane.reach + 0.01;
+    this.nearestMark.style.display = there ? "" : "none";
+    if (!there) return;
+    set(this.nearestMark, {
+      cx: this.plane.x(near.x).toFixed(1), cy: this.plane.y(this.psiAt(near.x)).toFixed(1),
+      class: near.low ? "zr-tw-nearest low" : "zr-tw-nearest",
+    });
   }
 
   /** Write names of joints in their colours. */

@@ -43,9 +43,15 @@ export class Plane {
     });
     svg(cross, "rect", { width: 1.6, height: 7, class: "zr-tw-near-ink" });
     svg(cross, "rect", { width: 7, height: 1.6, class: "zr-tw-near-ink" });
+    const bars = svg(defs, "pattern", { id: `${this.key}-tight`, width: 6, height: 6, patternUnits: "userSpaceOnUse" });
+    svg(bars, "rect", { width: 6, height: 6, class: "zr-tw-tight-ground" });
+    svg(bars, "rect", { width: 6, height: 1.4, class: "zr-tw-tight-ink" });
     this.clip = svg(svg(defs, "clipPath", { id: `${this.key}-clip` }), "rect");
     this.inside = svg(root, "g", { "clip-path": `url(#${this.key}-clip)` });
     this.zones = svg(this.inside, "g");
+    this.zone = null; // where the clearance is not kept
+    this.zoneShapes = svg(this.inside, "g");
+    this.tight = true; // whether it is drawn
     this.lines = svg(this.inside, "g");
     this.loads = svg(this.inside, "g");
     this.loaded = false; // whether they are drawn
@@ -92,7 +98,13 @@ export class Plane {
       ...data, spread: bytes(data.spread), zone: bytes(data.zone), limited: bytes(data.limited),
       singular: bytes(data.singular), best: bytes(data.best),
     };
-    this.image = null;
+    this.image = this.zone = null;
+  }
+
+  /** Where the clearance is not kept on the map that is shown, or null. */
+  showZone(data) {
+    this.zone = data && { ...data, near: bytes(data.near) };
+    this.drawZone();
   }
 
   /** Show spins around a middle, so many on either side [deg]. */
@@ -113,6 +125,7 @@ export class Plane {
       this.drawZones();
       this.drawLines();
     }
+    this.drawZone();
     this.drawLoads();
     this.drawAxes();
   }
@@ -203,6 +216,16 @@ export class Plane {
       });
       svg(this.zones, "path", { d: this.path(region.edges, false), class: `zr-tw-edge zr-tw-${name}-edge` });
     }
+  }
+
+  drawZone() {
+    this.zoneShapes.replaceChildren();
+    if (!this.data || !this.zone || !this.tight) return;
+    const { rings, edges } = this.zone;
+    svg(this.zoneShapes, "path", {
+      d: this.path(rings, true), fill: `url(#${this.key}-tight)`, "fill-rule": "evenodd", "data-testid": "tight",
+    });
+    svg(this.zoneShapes, "path", { d: this.path(edges, false), class: "zr-tw-edge zr-tw-tight-edge" });
   }
 
   drawLines() {
@@ -335,6 +358,7 @@ export class Plane {
       `stand-off ${number(Math.abs(distance) + this.data.corner, 1)} mm, spin ${number(psi, 1)}°`,
       ZONES[zone] + (where[zone] ? ` (${where[zone]})` : ""),
     ];
+    if (this.zone?.near[at] && zone < 3) parts.push("too near");
     if (level < 254 && zone < 3) parts.push(`twist spread ${spread.toFixed(2)} deg/mm`);
     if (level === 254 && zone < 3) parts.push(`twist spread over ${cap} deg/mm`);
     if (this.data.branch === null && zone < 3) parts.push(`branch ${this.data.best[at]}`);
