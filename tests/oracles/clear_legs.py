@@ -1,7 +1,8 @@
-"""The least travel of two straight legs that keep clear of a box, by brute force.
+"""The least travel of two straight legs that keep clear of boxes, by brute force, on every branch that reaches a hole.
 
 At each of many spins at the target the slopes of a grid on either side of the critical rates are tried, each leg
-sampled; then more spins around the best ones.
+sampled. The pairs are then gone through from the least travel on, until the legs of one keep clear; around the best few
+the grid is made finer, until it hardly matters. Nothing of the search, and none of its distances, is used.
 """
 
 from __future__ import annotations
@@ -12,101 +13,142 @@ from oracles.solids import least_at
 from zerorev.model.arm_bodies import bodies_of
 from zerorev.motion.drilling import joint_rates
 from zerorev.motion.joint_path import outward_rates
-from zerorev.search.straight import LEAST_RATE
 
-__all__ = ["least_travel"]
+__all__ = ["clear_of_all", "least_travel", "moving"]
 
-NODES, SLOPES, SPINS = 25, 70, 480
-HALVINGS = 16
+NODES, SLOPES, SPINS = 25, 48, 360
+LEAST_RATE = np.deg2rad(1e-5)  # [rad/m] a joint that goes slower stands still
+STARTS, ROUNDS, BESIDE = 4, 14, 4  # of the finer grids; places on either side of the best one
+
+
+def moving(drilling):
+    """The bodies of the arm and its tool that move."""
+    return [body for body in bodies_of(drilling.robot, drilling.tool) if body.link > 0]
+
+
+def clear_of_all(drilling, settings, bodies, joints):
+    """Whether some bodies keep the clearance from all boxes at joints (N, 6)."""
+    return all(
+        least_at(drilling.robot, bodies, joints, box, thirds=24).min() >= settings.clearance
+        for box in settings.surroundings.obstacles
+    )
 
 
 class _Legs:
-    def __init__(self, drilling, settings, box, branch):
-        self.drilling, self.settings, self.box, self.branch = drilling, settings, box, branch
-        self.moving = [body for body in bodies_of(drilling.robot, drilling.tool) if body.link > 0]
-        self.standoff = np.linspace(0, drilling.hole.depth, NODES)
+    """Straight legs out of spins at the target on one branch: shapes (spins, slopes) throughout."""
 
-    def look(self, psi_t, slope):
-        """Which legs turn no joint round and keep the threshold, their joints, and what they travel."""
-        standoff = np.tile(self.standoff, (slope.size, 1))
-        psi = psi_t + slope[:, None] * standoff
-        rates = outward_rates(self.drilling, self.branch, standoff.ravel(), psi.ravel(), np.repeat(slope, NODES))
-        rates = rates.reshape(slope.size, NODES, 6)
-        fits = ((rates * np.sign(rates[:, :1])).min(axis=1) > max(self.settings.min_rate, LEAST_RATE)).all(axis=1)
-        joints = self.drilling.angles(standoff, psi)[..., self.branch, :]
-        joints = np.unwrap(joints, axis=1)
-        travel = np.abs(joints[:, -1] - joints[:, 0]).sum(axis=1)
-        return fits & np.isfinite(travel), joints, travel
+    def __init__(self, drilling, settings, bodies, branch, psi_t, slope):
+        self.drilling, self.settings, self.bodies = drilling, settings, bodies
+        standoff = np.linspace(0, drilling.hole.depth, NODES)
+        psi = psi_t[:, None, None] + slope[..., None] * standoff
+        at = np.broadcast_to(standoff, psi.shape)
+        rates = outward_rates(drilling, branch, at.ravel(), psi.ravel(), np.repeat(slope.ravel(), NODES))
+        rates = rates.reshape(*psi.shape, 6)
+        slowest = max(settings.min_rate, LEAST_RATE)
+        self.fits = ((rates * np.sign(rates[..., :1, :])).min(axis=2) > slowest).all(axis=-1)
+        self.fits &= np.abs(slope) * drilling.hole.depth <= 2 * np.pi
+        self.joints = np.full((*slope.shape, NODES, 6), np.nan)
+        self.joints[self.fits] = np.unwrap(drilling.angles(at[self.fits], psi[self.fits])[..., branch, :], axis=1)
+        self.travel = np.abs(self.joints[..., -1, :] - self.joints[..., 0, :]).sum(axis=-1)
+        self.fits &= np.isfinite(self.travel)
+        self.known = np.zeros(slope.shape, dtype=int)  # 1: keeps clear; -1: does not
 
-    def clear(self, joints):
-        robot = self.drilling.robot
-        return least_at(robot, self.moving, joints, self.box, thirds=24).min() >= self.settings.clearance
+    def clear(self, n, k):
+        """Whether a leg keeps clear."""
+        if self.known[n, k] == 0:
+            keeps = clear_of_all(self.drilling, self.settings, self.bodies, self.joints[n, k])
+            self.known[n, k] = 1 if keeps else -1
+        return self.known[n, k] > 0
 
-    def side(self, psi_t, nearest, way, most):
-        """The leg on one side of the critical rates that travels least: travel and joints, or None."""
-        steepest = 2 * np.pi / self.drilling.hole.depth
-        slope = nearest + way * max(steepest - way * nearest, 0.0) * np.geomspace(1e-4, 1, SLOPES)
-        fits, joints, travel = self.look(psi_t, slope)
-        for k in np.argsort(np.where(fits, travel, np.inf)):
-            if not fits[k] or travel[k] > most:
-                return None
-            if self.clear(joints[k]):
+
+def _pairs(drilling, one, other, most):
+    """Pairs of legs that fit together, from the least travel on, none above the most: travel, spin and slopes."""
+    fits = one.fits[:, :, None] & other.fits[:, None, :]
+    total = np.where(fits, one.travel[:, :, None] + other.travel[:, None], np.inf)
+    n, j, k = np.nonzero(total < most)
+    order = np.argsort(total[n, j, k], kind="stable")
+    limits, turn = drilling.limits, 2 * np.pi
+    for at in np.array_split(order, max(len(order) // 512, 1)):
+        at = at[(one.known[n[at], j[at]] >= 0) & (other.known[n[at], k[at]] >= 0)]
+        if not at.size:
+            continue
+        # no joint turns round on a leg
+        ends = np.concatenate([one.joints[n[at], j[at]][:, [0, -1]], other.joints[n[at], k[at]][:, [0, -1]]], axis=1)
+        low, high = ends.min(axis=1), ends.max(axis=1)
+        within = (np.ceil((limits.lower - low) / turn) <= np.floor((limits.upper - high) / turn)).all(axis=1)
+        for m in at[within].tolist():
+            yield float(total[n[m], j[m], k[m]]), int(n[m]), int(j[m]), int(k[m])
+
+
+def _best(drilling, one, other, most, count=1):
+    """The first pairs that keep clear, of spins that are apart: travel, spin, slopes by their numbers."""
+    found = []
+    for travel, n, j, k in _pairs(drilling, one, other, most):
+        if any(abs(n - each[1]) <= 3 for each in found):
+            continue
+        if one.clear(n, j) and other.clear(n, k):
+            found.append((travel, n, j, k))
+            if len(found) == count:
                 break
-        else:
-            return None
-        best = travel[k], joints[k]
-        for beside in (k - 1, k + 1):
-            good, bad = slope[k], slope[min(max(beside, 0), SLOPES - 1)]
-            for _ in range(HALVINGS):
-                middle = (good + bad) / 2
-                (fit,), (along,), (moved,) = self.look(psi_t, np.array([middle]))
-                if fit and moved < best[0] + 1e-12 and self.clear(along):
-                    good, best = middle, (moved, along)
-                else:
-                    bad = middle
-        return best
-
-    def at(self, spins, most):
-        """The best pairs at spins: travel and spin, best first."""
-        theta_s, theta_psi = joint_rates(self.drilling, np.zeros(spins.size), spins)
-        with np.errstate(all="ignore"):
-            critical = (-theta_s / theta_psi)[:, self.branch]
-        found = []
-        for psi_t, kappa in zip(spins, critical, strict=True):
-            if not np.isfinite(kappa).all():
-                continue
-            pair = [self.side(psi_t, kappa.max(), 1, most), None]
-            if pair[0] is not None:
-                pair[1] = self.side(psi_t, kappa.min(), -1, most)
-            if pair[1] is not None and self.within(*pair):
-                found.append((pair[0][0] + pair[1][0], psi_t))
-                most = min(most, found[-1][0] * 1.15)
-        return sorted(found)
-
-    def within(self, one, other):
-        """Whether full turns bring both within the limits."""
-        limits = self.drilling.limits
-        both = np.concatenate([one[1], other[1]])
-        turn = 2 * np.pi
-        first = np.ceil((limits.lower - both.min(axis=0)) / turn)
-        return (first <= np.floor((limits.upper - both.max(axis=0)) / turn)).all()
+    return found
 
 
-def least_travel(drilling, settings, box, branch, most):
-    """The least travel found [rad], inf where none is below `most`."""
-    legs = _Legs(drilling, settings, box, branch)
-    found = legs.at(np.linspace(-np.pi, np.pi, SPINS, endpoint=False), most)
-    if not found:
-        return np.inf
-    best, step, around = found[0][0], 2 * np.pi / SPINS, []
-    for _, psi_t in found:
-        if all(abs(psi_t - other) > 3 * step for other in around):
-            around.append(psi_t)
-    for psi_t in around[:2]:
-        width = step
-        for _ in range(3):
-            closer = legs.at(np.linspace(psi_t - width, psi_t + width, 9), best * 1.05)
-            if closer:
-                best, psi_t = min(best, closer[0][0]), closer[0][1]
-            width /= 4
+def _slopes(drilling, branch, psi_t):
+    """Slopes on either side of the critical rates, close together near them: above and below, shape (n, SLOPES)."""
+    theta_s, theta_psi = joint_rates(drilling, np.zeros(psi_t.size), psi_t)
+    with np.errstate(all="ignore"):
+        critical = (-theta_s / theta_psi)[:, branch]
+    steepest, share = 2 * np.pi / drilling.hole.depth, np.geomspace(1e-4, 1, SLOPES)
+    above, below = critical.max(axis=1)[:, None], critical.min(axis=1)[:, None]
+    return above + np.maximum(steepest - above, 0.0) * share, below - np.maximum(steepest + below, 0.0) * share
+
+
+def _finer(drilling, settings, bodies, branch, start, psi_t, slopes, steps):
+    """The best pair around one: grids that follow it and shrink."""
+    best, places = start, np.linspace(-1, 1, 2 * BESIDE + 1)
+    width, wide = steps[0], list(steps[1:])
+    for _ in range(ROUNDS):
+        spins = psi_t + width * places[1::2]
+        one, other = (
+            _Legs(drilling, settings, bodies, branch, spins, np.tile(slope + w * places, (spins.size, 1)))
+            for slope, w in zip(slopes, wide, strict=True)
+        )
+        found = _first(drilling, one, other, best)
+        if found is not None:
+            best, n, j, k = found
+            psi_t, slopes = spins[n], (slopes[0] + wide[0] * places[j], slopes[1] + wide[1] * places[k])
+        width, wide = width * 0.6, [0.6 * w for w in wide]
+    return best
+
+
+def _first(drilling, one, other, most):
+    found = _best(drilling, one, other, most)
+    return found[0] if found else None
+
+
+def least_travel(drilling, settings, most=np.inf):
+    """The least travel found [rad], inf where no pair of legs keeps clear.
+
+    Args:
+        drilling: robot, tool and hole.
+        settings: with the boxes.
+        most: pairs that travel more are left out [rad].
+    """
+    spins = np.linspace(-np.pi, np.pi, SPINS, endpoint=False)
+    bodies, seen = moving(drilling), []
+    for branch in range(8):
+        reached = np.isfinite(drilling.angles(np.zeros(SPINS), spins)[:, branch]).all(axis=1)
+        if not reached.any():
+            continue
+        psi_t = spins[reached]
+        above, below = _slopes(drilling, branch, psi_t)
+        one, other = (_Legs(drilling, settings, bodies, branch, psi_t, slope) for slope in (above, below))
+        bound = min([most, *(1.1 * travel for travel, *_ in seen)])
+        for travel, n, j, k in _best(drilling, one, other, bound, STARTS):
+            # as far as to the next places of the grid
+            beside = [np.abs(np.gradient(row))[m] for row, m in ((above[n], j), (below[n], k))]
+            seen.append((travel, branch, psi_t[n], (above[n, j], below[n, k]), (2 * np.pi / SPINS, *beside)))
+    best = np.inf
+    for travel, branch, psi, slopes, steps in sorted(seen)[:STARTS]:
+        best = min(best, _finer(drilling, settings, bodies, branch, travel, psi, slopes, steps))
     return best

@@ -22,17 +22,18 @@ from zerorev.model._arrays import Array
 from zerorev.model.measures import CRITERIA
 from zerorev.model.settings import Settings
 from zerorev.motion.drilling import Drilling
-from zerorev.search.leg_pairs import FINE_NODES, Counts, Point, Sides
+from zerorev.search.leg_pairs import FINE_NODES, Counts, Mask, Point, Sides
 from zerorev.search.problem import Problem
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.survey import survey
-from zerorev.search.weighted import WeightedLegs, apart
+from zerorev.search.weighted import VALLEYS, WeightedLegs, apart
 
 __all__ = ["Cleared", "clear_of", "keeps_clear"]
 
 FINALISTS = 4  # points that are zoomed in on finely, at most
 WORTH_A_ZOOM = 0.1  # relative: a point of the grid this much above the best one may still lie below it
 SAME = 1e-3  # relative: a point this much above the best one is not finished, once that is
+WITHIN = np.array([0.25, 0.5, 0.75])  # of the way from one spin of the grid to the next
 FIRST_SPINS = 32  # of all postures, that are surveyed before more are
 PIECES = 300  # of a leg, that are examined until the best points are zoomed in on finely
 MOST_TRIED = 600  # motions of the grid with reversals that are tried
@@ -110,10 +111,30 @@ class _ClearLegs(WeightedLegs):
             chosen = np.zeros(free.shape, dtype=np.bool_)
             chosen.flat[order[begin : begin + size]] = True
             for posture in np.flatnonzero(chosen.any(axis=1)).tolist():
-                found += self.surveyed(posture, chosen[posture])
+                found += self.surveyed(posture, self.spins[chosen[posture]])
             best = min((point.cost for point in found), default=np.inf)
             begin, size = begin + size, 2 * size
-        return self.valleys(found)
+        promising = np.isfinite(free) & (free <= best + WORTH_A_ZOOM * abs(best))
+        return sorted([*self.valleys(found), *self._between(found, promising)])[:VALLEYS]
+
+    def _between(self, found: list[Point], promising: Mask) -> Iterator[Point]:
+        """The best pairs between two spins of the grid that have none, one of which is promising.
+
+        What an obstacle leaves of an interval of spins may be narrower than the grid.
+
+        Args:
+            found: pairs at spins of the grid.
+            promising: which spins of which postures, shape (4, K).
+        """
+        none = np.ones(promising.shape, dtype=np.bool_)
+        for point in found:
+            none[point.branch // 2, np.searchsorted(self.spins, point.psi_t)] = False
+        wanted = none & np.roll(none, -1, axis=1) & (promising | np.roll(promising, -1, axis=1))
+        if self.settings.psi_bound is not None:
+            wanted[:, -1] = False
+        step = float(self.spins[1] - self.spins[0])
+        for posture in np.flatnonzero(wanted.any(axis=1)).tolist():
+            yield from self.surveyed(posture, np.add.outer(self.spins[wanted[posture]], step * WITHIN).ravel())
 
     def _free_costs(self) -> Array:
         """What the best pair at each spin costs without obstacles, shape (4, K), of either wrist flip; inf: none."""

@@ -23,7 +23,7 @@ from zerorev.motion.criteria import measure, objective_of
 from zerorev.motion.drilling import Drilling, joint_rates
 from zerorev.motion.joint_path import turns_within
 from zerorev.search.exact import search
-from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Mask, Point, Sides, turns_round
+from zerorev.search.leg_pairs import FINE_NODES, NODES, LegPairs, Point, Sides, turns_round
 from zerorev.search.rank import Candidate, Order
 from zerorev.search.straight import GRID, LEAST_RATE, LIMIT_SLACK, steepest_twist, straight_motion, target_spins
 
@@ -89,17 +89,12 @@ class WeightedLegs(LegPairs):
 
     def survey(self) -> list[Point]:
         """The best pairs without reversal of a grid of spins, the least of each valley, best first."""
-        everywhere = np.ones(self.spins.size, dtype=np.bool_)
-        return self.valleys(point for posture in range(4) for point in self.surveyed(posture, everywhere))
+        return self.valleys(point for posture in range(4) for point in self.surveyed(posture, self.spins))
 
     @cached_property
     def spins(self) -> Array:
         """The spins of the grid [rad], shape (K,)."""
         return target_spins(self.settings.psi_bound, GRID)
-
-    @cached_property
-    def _at_target(self) -> tuple[Array, Array]:
-        return joint_rates(self.drilling, np.zeros(self.spins.size), self.spins)
 
     def valleys(self, points: Iterable[Point]) -> list[Point]:
         """Of points of the grid those whose neighbours are no better, best first."""
@@ -112,14 +107,14 @@ class WeightedLegs(LegPairs):
                 found.append(point)
         return sorted(found)[:VALLEYS]
 
-    def surveyed(self, posture: int, chosen: Mask) -> Iterator[Point]:
-        """The best pairs of some spins of the grid on either wrist flip of a posture.
+    def surveyed(self, posture: int, psi: Array) -> Iterator[Point]:
+        """The best pairs of some spins on either wrist flip of a posture.
 
         Args:
             posture: 0..3.
-            chosen: which spins, shape (K,).
+            psi: spins at the target [rad], shape (n,).
         """
-        psi, (theta_s, theta_psi) = self.spins[chosen], (each[chosen] for each in self._at_target)
+        theta_s, theta_psi = joint_rates(self.drilling, np.zeros(psi.size), psi)
         branches = [branch for branch in (2 * posture, 2 * posture + 1) if self.drilling.hole.branch in (None, branch)]
         with np.errstate(divide="ignore", invalid="ignore"):
             kappa = (-theta_s / theta_psi)[:, 2 * posture]
