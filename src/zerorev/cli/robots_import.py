@@ -45,6 +45,7 @@ def import_(
         output: Where to write the robot file (YAML); by default it is printed.
     """
     from zerorev.files.output import write_text
+    from zerorev.motion.from_axes import EQUAL
     from zerorev.motion.importing import import_robot, robot_file
 
     check_outputs([output], file)
@@ -61,9 +62,7 @@ def import_(
     for note in found.notes:
         terminal.note(note)
     where = "" if output is None else f", written to {output}"
-    terminal.say(
-        f"{found.robot.name}: equal to {file.name} within {found.apart:.1g} m at 200 random joint angles{where}"
-    )
+    terminal.say(f"{found.robot.name}: equal to {file.name} within {EQUAL:g} m at 200 random joint angles{where}")
     return FINE
 
 

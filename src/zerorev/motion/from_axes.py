@@ -17,7 +17,7 @@ from zerorev.model.axes import Axes
 from zerorev.model.robot import ArmGeometry, JointLimits, Robot, six
 from zerorev.motion.kinematics import forward
 
-__all__ = ["TOLERANCE", "Found", "conditions", "robot_of_axes"]
+__all__ = ["EQUAL", "TOLERANCE", "Found", "conditions", "robot_of_axes"]
 
 TOLERANCE = 1e-6  # [m] and [rad]: what counts as parallel, perpendicular, meeting
 EQUAL = 1e-9  # [m] and [1]: between the poses of the arm and those of its source
