@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
 
 from zerorev.cli.common import FINE, FOUND, Whole, app, check_outputs, need, need_report
 from zerorev.cli.proofs import Proofs
@@ -13,12 +15,15 @@ from zerorev.errors import InputError
 from zerorev.report.words import terminal
 
 if TYPE_CHECKING:
+    from zerorev.model.finding import Finding
     from zerorev.model.plan import Plan
     from zerorev.model.written import Drilled, WrittenProgram
     from zerorev.planning.restated import Checked
     from zerorev.program.dialect import Dialect
 
 __all__ = ["check"]
+
+Programs = Annotated[tuple[Path, ...], Parameter(name="--program", consume_multiple=True, negative=())]
 
 
 @app.command
@@ -27,7 +32,7 @@ def check(
     /,
     *,
     certify: bool = False,
-    program: Path | None = None,
+    program: Programs = (),
     tolerance: bool = False,
     tolerance_mm: float | None = None,
     tolerance_deg: float | None = None,
@@ -48,7 +53,8 @@ def check(
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
         program: With --certify: prove this program (.src, .mod, .ls), exported from the plan, instead: the rounded
-            numbers that stand in it, lead-in and all. The plan file is left as it is.
+            numbers that stand in it, lead-in and all. The plan file is left as it is. Several: those of a plan of
+            several tools, one after the other.
         tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
             be certified, and write it into the plan file.
         tolerance_mm: With --certify: certify each hole for every part frame whose origin is at most so far [mm] off the
@@ -61,31 +67,32 @@ def check(
         report: Page with everything about the checked plan to write (HTML), to be printed or filed; it needs no
             network.
         json: Print the checked plan as JSON on standard output, and nothing else there; with --program, what is proven
-            of each hole of the program; with --proof, `proofs` besides.
+            of each hole of the program, of several a list; with --proof, `proofs` besides.
     """
     from zerorev.files.checked_files import remember
     from zerorev.files.io import plan_from_text, plan_text, plan_to_json, write_plan
     from zerorev.files.output import check_file
 
-    if program is not None and not certify:
+    if program and not certify:
         raise InputError("a program is only read to be certified", where="--program", accepted="--certify beside it")
     asked = Tolerances(tolerance, tolerance_mm, tolerance_deg, tolerance_ratio)
-    asked.check(certify=certify, program=program is not None)
+    asked.check(certify=certify, program=bool(program))
     proofs = Proofs(proof, proof_sample)
-    proofs.check(program=program is not None)
+    proofs.check(program=bool(program))
+    if report is not None and len(program) > 1:
+        raise InputError("a page is of one program", where="--program", accepted="one, beside --report")
     if certify or proof:
         need("flint", "python-flint", "--certify" if certify else "--proof", "certify")
-    check_outputs((report,), plan, *([] if program is None else [program]))
+    check_outputs((report,), plan, *program)
     need_report(report)
-    if certify and program is None:
+    if certify and not program:
         check_file(plan)
     text = plan_text(plan)
     stated = plan_from_text(text, str(plan))
-    if program is not None:
+    if program:
         from zerorev.program.dialects import dialect_of, read_program
 
-        written = read_program(program)
-        dialect = dialect_of(program)
+        read = [(path, read_program(path), dialect_of(path)) for path in program]
 
     from zerorev.planning.restated import check_plan, without_proofs
     from zerorev.report.words.outcome import curves
@@ -94,43 +101,55 @@ def check(
         checked = check_plan(stated, workers=None, progress=progress)
     if checked.as_stated and _passed(stated) <= _passed(checked.plan):
         remember(text)
-    if program is not None:
-        from zerorev.model.strokes import together
-        from zerorev.program.notes import calls, only_numbered
-        from zerorev.verify.certificate.program import certify_program
-
-        with terminal.busy("proving"):
-            checked, strokes, drilled = _of_the_program(checked, written, dialect, program.stem)
-            proven = together(checked.plan, certify_program(strokes, written, drilled))
-            unexamined = (*calls(proven.settings), *only_numbered(written))
-            checked = replace(checked, plan=replace(proven, findings=(*proven.findings, *unexamined)))
-    elif certify:
+    answers: list[Plan] = []
+    listed: list[dict[str, Any]] = []
+    for path, written, dialect in read if program else ():
+        with terminal.busy(f"proving {path.name}"):
+            proven, unexamined = _proven(checked, written, dialect, path.stem)
+        answers.append(proven)
+        listed.append(_proofs(plan_to_json(proven), written.name, [each.message for each in unexamined]))
+    if certify and not program:
         with terminal.busy("proving"):
             checked = replace(checked, plan=asked.certified(checked.plan))
         write_plan(checked.marked(rewritten=True), plan)
         remember(plan_text(plan))
-    answer = checked.marked() if certify else without_proofs(checked.marked())
+    if not program:
+        answers = [checked.marked() if certify else without_proofs(checked.marked())]
     found = proofs.checked(checked.plan)
     if report is not None:
         from zerorev.cli.answering import write_report
 
-        said = write_report(answer, report, plan.name)
-    if json and program is not None:
-        terminal.print_json(_proofs(plan_to_json(answer), written.name, [each.message for each in unexamined]))
+        said = write_report(answers[0], report, plan.name)
+    if json and program:
+        terminal.print_json(listed[0] if len(listed) == 1 else listed)
     elif json:
-        terminal.print_json(plan_to_json(answer) | proofs.as_json(found))
+        terminal.print_json(plan_to_json(answers[0]) | proofs.as_json(found))
     else:
-        _show_plan(answer)
-        if program is not None:
-            terminal.say(f"the certificates are of {program} as it was read back; {plan} is left as it is")
-        elif certify:
-            terminal.say(f"check and certificates written into {plan}")
-        if certify and (proven_for := curves(answer.holes)):
-            terminal.say(proven_for)
+        for n, answer in enumerate(answers):
+            _show_plan(answer)
+            if program:
+                terminal.say(f"the certificates are of {program[n]} as it was read back; {plan} is left as it is")
+            elif certify:
+                terminal.say(f"check and certificates written into {plan}")
+            if certify and (proven_for := curves(answer.holes)):
+                terminal.say(proven_for)
         proofs.show(found)
         if report is not None:
             terminal.say(said)
-    return _verdict(answer, certify=certify) or asked.verdict(answer) or proofs.verdict(found)
+    verdicts = [_verdict(answer, certify=certify) or asked.verdict(answer) for answer in answers]
+    return max(verdicts) or proofs.verdict(found)
+
+
+def _proven(checked: Checked, written: WrittenProgram, dialect: Dialect, stem: str) -> tuple[Plan, tuple[Finding, ...]]:
+    """The plan of the tool that a program is of, with the program's certificates, and what it leaves unexamined."""
+    from zerorev.model.strokes import together
+    from zerorev.program.notes import calls, only_numbered
+    from zerorev.verify.certificate.program import certify_program
+
+    own, strokes, drilled = _of_the_program(checked, written, dialect, stem)
+    proven = together(own.plan, certify_program(strokes, written, drilled))
+    unexamined = (*calls(proven.settings), *only_numbered(written))
+    return replace(own, plan=replace(proven, findings=(*proven.findings, *unexamined))).marked(), unexamined
 
 
 def _of_the_program(
@@ -147,9 +166,10 @@ def _of_the_program(
     found: list[tuple[Checked, Plan, tuple[Drilled, ...]]] = []
     why: InputError | None = None
     for each in (checked, *checked.further):
-        strokes = by_stroke(each.plan)
+        alone = replace(each, plan=replace(each.plan, further=()), further=())
+        strokes = by_stroke(alone.plan)
         try:
-            found.append((each, strokes, as_exported(strokes, written, dialect, stem)))
+            found.append((alone, strokes, as_exported(strokes, written, dialect, stem)))
         except InputError as error:
             why = why or error
     if not found and why is not None:
@@ -158,8 +178,7 @@ def _of_the_program(
     def apart(one: tuple[Checked, Plan, tuple[Drilled, ...]]) -> int:
         return sum(len(hole.wrong) + (hole.hole is None) for hole in one[2])
 
-    closest, strokes, drilled = min(found, key=apart)
-    return replace(closest, plan=replace(closest.plan, further=()), further=()), strokes, drilled
+    return min(found, key=apart)
 
 
 def _passed(plan: Plan) -> set[tuple[int, str]]:

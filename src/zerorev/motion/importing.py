@@ -30,6 +30,7 @@ __all__ = ["Imported", "Limit", "import_robot", "robot_file"]
 Limit = tuple[float | None, float | None, float | None]  # lower, upper [deg], speed [deg/s]
 DIGITS = 6  # [deg] of limits, which descriptions state in rad
 MOST_BYTES = 20 * 2**20
+LEAST_MOVED = 1e-4  # [mm] worth a figure
 CATALOGUE = "Limits and speeds are those of the description, not the machine data of your controller."
 
 
@@ -129,7 +130,7 @@ def _better(exact: Axes, snapped: Axes, notes: list[str]) -> Axes:
     moved = np.abs((exact.forward(joints) - snapped.forward(joints))[:, :3, 3]).max()
     notes.append(
         f"angles of the file were rounded; taken as the multiples of 15 deg next to them, which moves {exact.tip} by "
-        f"{moved * 1e3:.2g} mm at most"
+        f"{max(moved * 1e3, LEAST_MOVED):.2g} mm at most"
     )
     return snapped
 
