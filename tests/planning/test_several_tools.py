@@ -138,17 +138,17 @@ def test_the_programs_of_two_plain_tools_are_certified_at_once(tmp_path, capsys)
     job.write_text(json.dumps(JOB | {"tools": plain}))
     assert main(["plan", str(job), "-o", str(plan)]) == 0
     assert main(["export", str(plan)]) == 0
-    programs = [str(tmp_path / "two.src"), str(tmp_path / "two_tool_2.src")]
+    programs = ["--program", str(tmp_path / "two.src"), "--program", str(tmp_path / "two_tool_2.src")]
     capsys.readouterr()
-    assert main(["check", "--certify", str(plan), "--program", *programs]) == 0
+    assert main(["check", "--certify", str(plan), *programs]) == 0
     said = capsys.readouterr().out
     assert said.count("yes, certified") == 4
     assert said.count("as it was read back") == 2
-    assert main(["check", "--certify", str(plan), "--program", *programs, "--json"]) == 0
+    assert main(["check", "--certify", str(plan), *programs, "--json"]) == 0
     assert [each["program"] for each in json.loads(capsys.readouterr().out)] == ["two", "two_tool_2"]
     (tmp_path / "two.src").write_text((tmp_path / "two.src").read_text().replace("$ACT_TOOL=2", "$ACT_TOOL=3"))
-    assert main(["check", "--certify", str(plan), "--program", *programs]) == 1
-    assert main(["check", "--certify", str(plan), "--program", *programs, "--report", str(tmp_path / "r.html")]) == 2
+    assert main(["check", "--certify", str(plan), *programs]) == 1
+    assert main(["check", "--certify", str(plan), *programs, "--report", str(tmp_path / "r.html")]) == 2
 
 
 def test_one_tools_program_alone_and_under_another_name(files, capsys):

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 __all__ = ["check"]
 
-Programs = Annotated[tuple[Path, ...], Parameter(name="--program", consume_multiple=True, negative=())]
+Programs = Annotated[tuple[Path, ...], Parameter(negative=())]
 
 
 @app.command
@@ -53,8 +53,8 @@ def check(
         certify: Prove it besides, on the continuous motion instead of samples, and write check and proof into the plan
             file; what is refuted or cannot be decided is said.
         program: With --certify: prove this program (.src, .mod, .ls), exported from the plan, instead: the rounded
-            numbers that stand in it, lead-in and all. The plan file is left as it is. Several: those of a plan of
-            several tools, one after the other.
+            numbers that stand in it, lead-in and all. The plan file is left as it is. Once for each of a plan of
+            several tools.
         tolerance: With --certify: find for each hole the largest tolerance of the part's placement within which it can
             be certified, and write it into the plan file.
         tolerance_mm: With --certify: certify each hole for every part frame whose origin is at most so far [mm] off the
