@@ -101,26 +101,28 @@ def check(
         checked = check_plan(stated, workers=None, progress=progress)
     if checked.as_stated and _passed(stated) <= _passed(checked.plan):
         remember(text)
-    answers: list[Plan] = []
-    listed: list[dict[str, Any]] = []
-    for path, written, dialect in read if program else ():
-        with terminal.busy(f"proving {path.name}"):
-            proven, unexamined = _proven(checked, written, dialect, path.stem)
-        answers.append(proven)
-        listed.append(_proofs(plan_to_json(proven), written.name, [each.message for each in unexamined]))
-    if certify and not program:
+    if program:
+        with terminal.busy("proving"):
+            proven = [_proven(checked, written, dialect, path.stem) for path, written, dialect in read]
+        answers = [answer for answer, _ in proven]
+    elif certify:
         with terminal.busy("proving"):
             checked = replace(checked, plan=asked.certified(checked.plan))
         write_plan(checked.marked(rewritten=True), plan)
         remember(plan_text(plan))
-    if not program:
-        answers = [checked.marked() if certify else without_proofs(checked.marked())]
+        answers = [checked.marked()]
+    else:
+        answers = [without_proofs(checked.marked())]
     found = proofs.checked(checked.plan)
     if report is not None:
         from zerorev.cli.answering import write_report
 
         said = write_report(answers[0], report, plan.name)
     if json and program:
+        listed = [
+            _proofs(plan_to_json(answer), written.name, [each.message for each in unexamined])
+            for (answer, unexamined), (_, written, _) in zip(proven, read, strict=True)
+        ]
         terminal.print_json(listed[0] if len(listed) == 1 else listed)
     elif json:
         terminal.print_json(plan_to_json(answers[0]) | proofs.as_json(found))
